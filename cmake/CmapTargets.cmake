@@ -1,0 +1,40 @@
+# How cmap's own targets are made: modules, programs and tests.
+
+# Warnings and floating-point rules of every target of ours.
+function(cmap_set_compile_options target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  # Fused multiply-adds would make results depend on the instruction set.
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion -Wshadow -ffp-contract=off)
+  if(CMAP_WARNINGS_AS_ERRORS)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+endfunction()
+
+# cmap_add_module(name SOURCES a.cpp ... [PUBLIC lib ...] [PRIVATE lib ...]) makes cmap::<name>.
+function(cmap_add_module name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  set(target cmap_${name})
+  add_library(${target} ${ARG_SOURCES})
+  add_library(cmap::${name} ALIAS ${target})
+  cmap_set_compile_options(${target})
+  target_include_directories(${target}
+    PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+    PRIVATE ${PROJECT_SOURCE_DIR}/lib)
+  target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  install(TARGETS ${target} EXPORT cmapTargets)
+endfunction()
+
+# cmap_add_tests(module name ...) makes one CTest test "<module>/<name>" of each <name>_test.cpp in this folder.
+function(cmap_add_tests module)
+  foreach(name IN LISTS ARGN)
+    set(target ${module}_${name}_test)
+    add_executable(${target} ${name}_test.cpp)
+    cmap_set_compile_options(${target})
+    target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests ${PROJECT_SOURCE_DIR}/lib)
+    target_link_libraries(${target} PRIVATE cmap::${module} GTest::gtest_main)
+    add_test(NAME ${module}/${name} COMMAND ${target})
+    set_tests_properties(${module}/${name} PROPERTIES TIMEOUT 600 SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\] 0 tests"
+      ENVIRONMENT "CMAP_SOURCE_DIR=${PROJECT_SOURCE_DIR};CMAP_BINARY_DIR=${PROJECT_BINARY_DIR}")
+  endforeach()
+endfunction()

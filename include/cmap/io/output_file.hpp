@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <string_view>
+
+namespace cmap {
+
+/// A file that appears under its name only when it is complete: written under a temporary name in the same folder,
+/// renamed by commit(), removed otherwise. Every failure (no folder, no permission, full disk) throws UsageError naming
+/// the path and the reason of the system.
+class OutputFile {
+ public:
+  explicit OutputFile(std::filesystem::path path);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  void write(const void* data, std::size_t bytes);
+  void write(std::string_view text) { write(text.data(), text.size()); }
+  /// Flushes to the system, checks for errors, and renames. Not called: nothing is left behind.
+  void commit();
+
+ private:
+  std::filesystem::path path_;
+  std::filesystem::path temporary_;
+  std::FILE* file_ = nullptr;
+};
+
+}  // namespace cmap

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cmap/core/point_cloud.hpp"
+
+namespace cmap {
+
+struct ReadOptions {
+  /// Also compute the SHA-256 of the whole file, from the same blocks that are parsed.
+  bool sha256 = false;
+};
+
+/// What a reader found out about a file.
+struct FileInfo {
+  std::string path;                ///< as given
+  std::string format;              ///< for people: "PLY binary little endian", "PCD compressed", "LAS 1.2 format 3", "text"
+  std::uint64_t points = 0;        ///< as stored
+  std::uint64_t finite_points = 0; ///< kept
+  std::string sha256;              ///< lowercase hex; empty unless asked for
+  std::vector<std::string> notes;  ///< what was decided on the user's behalf: "8-bit colors in 16-bit fields", ...
+};
+
+struct PointCloudFile {
+  PointCloud cloud;
+  FileInfo info;
+};
+
+/// Reads a point cloud of any format of FORMATS (PLY, PCD, LAS, text), recognized by content first, extension second.
+/// Non-finite points are dropped and counted; colors stay as stored; the origin is choose_origin() of the bounds.
+/// Thread-safe. Throws InputError naming file, place (line, byte or field) and reason: missing or unreadable file,
+/// unknown format, malformed or truncated content, a coordinate beyond kMaxCoordinate_m, no finite point.
+PointCloudFile read_point_cloud(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// A named value per point, written as a float property of its own.
+struct PointField {
+  std::string name;
+  std::span<const float> values;
+};
+
+enum class PlyEncoding { kAscii, kBinaryLittleEndian };
+enum class PcdEncoding { kAscii, kBinary, kBinaryCompressed };
+
+/// Writes x y z (float where the origin is zero, else double, so that nothing is lost), the colors as stored, and the
+/// fields. The file appears under its name only when complete. Throws UsageError if it cannot be written,
+/// std::invalid_argument if a field's length is not the cloud's.
+void write_ply(const std::filesystem::path& path, const PointCloud& cloud, std::span<const PointField> fields = {},
+               PlyEncoding encoding = PlyEncoding::kBinaryLittleEndian);
+
+/// The same as PCD v0.7; colors become packed 8-bit `rgb` (float32 bits), as PCL writes them.
+void write_pcd(const std::filesystem::path& path, const PointCloud& cloud,
+               PcdEncoding encoding = PcdEncoding::kBinary);
+
+}  // namespace cmap

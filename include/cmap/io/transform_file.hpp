@@ -1,0 +1,13 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+
+namespace cmap {
+
+/// Reads a 4x4 transform: text with 16 numbers, row-major (CloudCompare's and MapEval's form; `#` comments), or JSON
+/// ([[4x4]], or an object whose key "T" or single 4x4 member holds it). Throws InputError naming file, line and reason:
+/// not 16 finite numbers, last row not 0 0 0 1, a linear part that is no rotation times a positive scale (to 1e-3).
+Eigen::Matrix4d read_transform(const std::filesystem::path& path);
+
+}  // namespace cmap

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "io/cloud_builder.hpp"
+#include "io/line_reader.hpp"
+#include "io/point_schema.hpp"
+
+namespace cmap {
+
+/// Rows of numbers on their way into a builder, which takes columns.
+class RowStage {
+ public:
+  struct Row {
+    std::array<double, 3> xyz;
+    std::array<double, 3> rgb;
+  };
+  RowStage(CloudBuilder& builder, ColorStorage color);
+  void add(const Row& row) {
+    rows_.push_back(row);
+    if (rows_.size() == kRows) flush();
+  }
+  /// Hands over what is left; to be called at the end.
+  void flush();
+
+ private:
+  static constexpr std::size_t kRows = 1024;
+  CloudBuilder& builder_;
+  PointColumns columns_;
+  std::vector<Row> rows_;
+};
+
+/// Throws InputError unless n lines of these fields can lie in the rest of the file; call it before memory is taken.
+void require_ascii_rows(const ByteSource& source, std::uint64_t n, std::span<const Field> fields);
+
+/// Reads n points, one a line (blank lines are passed over), values in the order of the fields.
+void read_ascii_rows(LineReader& lines, std::uint64_t n, std::span<const Field> fields, const PointSchema& schema,
+                     CloudBuilder& builder);
+
+}  // namespace cmap

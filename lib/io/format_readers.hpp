@@ -1,0 +1,17 @@
+#pragma once
+
+#include "cmap/io/point_cloud_file.hpp"
+#include "io/byte_source.hpp"
+
+namespace cmap {
+
+/// Readers of one format each, from the first byte of the source on. They fill in format, counts and notes of `info`.
+PointCloud read_ply(ByteSource& source, FileInfo& info);
+PointCloud read_pcd(ByteSource& source, FileInfo& info);
+PointCloud read_las(ByteSource& source, FileInfo& info);
+PointCloud read_text(ByteSource& source, FileInfo& info);
+
+/// What read_point_cloud() does, on a source that is already open.
+PointCloudFile read_point_cloud(ByteSource& source);
+
+}  // namespace cmap

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "io/byte_source.hpp"
+
+namespace cmap {
+
+/// The lines of a source, counted from 1. LF and CRLF both end a line; the last one may lack its end.
+class LineReader {
+ public:
+  explicit LineReader(ByteSource& source) : source_(source) {}
+
+  /// The next line without its end, valid until the next call; false at the end of the file.
+  bool next(std::string_view& line);
+  std::uint64_t number() const { return number_; }
+  ByteSource& source() { return source_; }
+
+  /// Throws InputError "<name>: line <number>: <reason>".
+  template <class... Args>
+  [[noreturn]] void fail(fmt::format_string<Args...> reason, Args&&... args) const {
+    source_.fail("line {}: {}", number_, fmt::format(reason, std::forward<Args>(args)...));
+  }
+
+ private:
+  ByteSource& source_;
+  std::uint64_t number_ = 0;
+};
+
+}  // namespace cmap

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string_view>
+
+namespace cmap {
+
+inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f' || c == '\r'; }
+
+/// Cuts the next token, ended by blanks, off the front of `text`; empty when none is left.
+inline std::string_view next_token(std::string_view& text) {
+  std::size_t begin = 0;
+  while (begin < text.size() && is_blank(text[begin])) ++begin;
+  std::size_t end = begin;
+  while (end < text.size() && !is_blank(text[end])) ++end;
+  const std::string_view token = text.substr(begin, end - begin);
+  text.remove_prefix(end);
+  return token;
+}
+
+/// The whole token as a number, whatever the locale; "nan" and "inf" are numbers, a leading '+' is allowed. A number
+/// beyond the type's range becomes infinite, one below it zero. False if the token is anything else.
+bool parse_number(std::string_view token, double& value);
+bool parse_number(std::string_view token, float& value);
+bool parse_number(std::string_view token, unsigned long long& value);
+
+}  // namespace cmap

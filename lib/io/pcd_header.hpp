@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "io/line_reader.hpp"
+#include "io/point_schema.hpp"
+
+namespace cmap {
+
+enum class PcdData { kAscii, kBinary, kCompressed };
+
+struct PcdHeader {
+  std::vector<Field> fields;
+  std::uint64_t points = 0;
+  PcdData data = PcdData::kAscii;
+};
+
+/// Reads up to and including the line DATA. Throws InputError naming the line; notes a VIEWPOINT that is not identity.
+PcdHeader read_pcd_header(LineReader& lines, FileInfo& info);
+
+}  // namespace cmap

@@ -1,0 +1,35 @@
+#include "cmap/io/point_cloud_file.hpp"
+
+#include "io/byte_source.hpp"
+#include "io/file_format.hpp"
+#include "io/format_readers.hpp"
+
+namespace cmap {
+
+PointCloudFile read_point_cloud(ByteSource& source) {
+  PointCloudFile file;
+  file.info.path = source.name();
+  switch (detect_format(source)) {
+    case FileFormat::kPly:
+      file.cloud = read_ply(source, file.info);
+      break;
+    case FileFormat::kPcd:
+      file.cloud = read_pcd(source, file.info);
+      break;
+    case FileFormat::kLas:
+      file.cloud = read_las(source, file.info);
+      break;
+    case FileFormat::kText:
+      file.cloud = read_text(source, file.info);
+      break;
+  }
+  file.info.sha256 = source.finish_sha256();
+  return file;
+}
+
+PointCloudFile read_point_cloud(const std::filesystem::path& path, const ReadOptions& options) {
+  ByteSource source(path, options.sha256);
+  return read_point_cloud(source);
+}
+
+}  // namespace cmap

@@ -1,0 +1,47 @@
+#include "io/position_store.hpp"
+
+#include <algorithm>
+
+namespace cmap {
+namespace {
+
+// 48 MiB of doubles: beyond the size up to which malloc keeps freed memory to itself.
+constexpr std::size_t kChunkPoints = std::size_t{1} << 21;
+
+}  // namespace
+
+Array<Eigen::Vector3f> FloatPositions::take(const Eigen::Vector3d& origin) {
+  trim(positions_, kept_);
+  if (origin != Eigen::Vector3d::Zero()) {
+    for (Eigen::Vector3f& p : positions_) p = (p.cast<double>() - origin).cast<float>();
+  }
+  return std::move(positions_);
+}
+
+DoublePositions::DoublePositions(std::size_t max_points) : chunk_points_(std::min(max_points, kChunkPoints)) {}
+
+double* DoublePositions::room(std::size_t n) {
+  if (chunks_.empty() || n > chunks_.back().positions.size() - chunks_.back().kept) {
+    chunks_.push_back({Array<Eigen::Vector3d>(std::max(n, chunk_points_)), 0});
+  }
+  return chunks_.back().positions.data()->data() + 3 * chunks_.back().kept;
+}
+
+std::size_t DoublePositions::size() const {
+  std::size_t n = 0;
+  for (const Chunk& chunk : chunks_) n += chunk.kept;
+  return n;
+}
+
+Array<Eigen::Vector3f> DoublePositions::take(const Eigen::Vector3d& origin) {
+  Array<Eigen::Vector3f> positions(size());
+  Eigen::Vector3f* out = positions.data();
+  for (Chunk& chunk : chunks_) {
+    for (std::size_t i = 0; i < chunk.kept; ++i) *out++ = (chunk.positions[i] - origin).cast<float>();
+    chunk.positions = {};
+  }
+  chunks_.clear();
+  return positions;
+}
+
+}  // namespace cmap

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "cmap/core/simd.hpp"
+#include "cmap/spatial/bvh.hpp"
+#include "cmap/spatial/nearest.hpp"
+#include "cmap/spatial/radius.hpp"
+
+namespace cmap {
+
+/// Query points and the vector that moves them into the index's frame.
+struct Queries {
+  const PointBlocks& points;
+  Eigen::Vector3d shift;
+};
+
+/// Bits of the original index below the Hilbert key in a sort key.
+inline constexpr int kIndexBits = 31;
+inline constexpr int kCellBits = 11;
+
+/// A grid of 2048 cells an axis over a box.
+struct CurveGrid {
+  float min[3];
+  float cells_per_m[3];
+};
+
+/// One set of kernels for each instruction set, all with bitwise equal results. Every function handles the query
+/// blocks [begin, end) and writes only their slots.
+struct Kernels {
+  /// keys[i] = Hilbert cell of positions[i] << 31 | first_index + i.
+  void (*hilbert_keys)(const Eigen::Vector3f* positions, std::size_t n, const CurveGrid& grid,
+                       std::uint64_t first_index, std::uint64_t* keys);
+  void (*nearest)(const Bvh& index, const Queries& queries, std::size_t begin, std::size_t end, NearestField& result);
+  void (*lower_color_distance)(const Bvh& index, const Array<ColorBlock>& index_colors,
+                               const BoxLevels& index_color_boxes, const Queries& queries,
+                               const Array<ColorBlock>& query_colors, const ColorSearch& search, std::size_t begin,
+                               std::size_t end, Array<float>& best);
+  void (*neighborhood_shapes)(const Bvh& cloud, double radius_m, std::size_t begin, std::size_t end,
+                              NeighborhoodShape& result);
+};
+
+/// The kernels of one level; `kernels()` are those of simd_level(). The level must be one this processor has.
+const Kernels& kernels_for(SimdLevel level);
+const Kernels& kernels();
+
+}  // namespace cmap

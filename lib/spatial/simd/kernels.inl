@@ -1,0 +1,19 @@
+// The kernels, compiled once for each instruction set: CMAP_LANES names the namespace that holds its lanes.
+//
+// No inline function of another header may be emitted here and then be shared with the rest of the program: it would
+// carry this file's instructions onto processors without them. Hence plain loops and pointers in the kernels.
+
+#include "spatial/simd/kernels.hpp"
+
+#include "spatial/simd/hilbert.inl"
+#include "spatial/simd/traversal.inl"
+#include "spatial/simd/nearest.inl"
+#include "spatial/simd/color_within.inl"
+#include "spatial/simd/neighborhood.inl"
+
+namespace cmap::CMAP_LANES {
+
+extern const Kernels kKernels;
+const Kernels kKernels{&hilbert_keys, &nearest, &lower_color_distance, &neighborhood_shapes};
+
+}  // namespace cmap::CMAP_LANES

@@ -1,0 +1,4 @@
+#include "spatial/simd/lanes_avx2.hpp"
+
+#define CMAP_LANES avx2
+#include "spatial/simd/kernels.inl"

@@ -1,0 +1,4 @@
+#include "spatial/simd/lanes_sse2.hpp"
+
+#define CMAP_LANES sse2
+#include "spatial/simd/kernels.inl"

@@ -1,0 +1,103 @@
+// Moments of all neighbors within a radius, for sixteen queries at a time; plain loops over doubles that compilers
+// vectorize, each lane adding its neighbors in the same order at every instruction set.
+
+namespace cmap::CMAP_LANES {
+namespace {
+
+/// Sums over the neighbors of sixteen queries, relative to the query.
+struct Moments16 {
+  alignas(64) double n[16], x[16], y[16], z[16], xx[16], xy[16], xz[16], yy[16], yz[16], zz[16];
+};
+
+struct QueryLanes {
+  alignas(64) double x[16], y[16], z[16];
+};
+
+inline void add_point(const QueryLanes& q, double px, double py, double pz, double sq_radius, Moments16& m) {
+  for (int i = 0; i < 16; ++i) {
+    const double dx = px - q.x[i];
+    const double dy = py - q.y[i];
+    const double dz = pz - q.z[i];
+    const double inside = dx * dx + dy * dy + dz * dz <= sq_radius ? 1.0 : 0.0;
+    const double wx = inside * dx;
+    const double wy = inside * dy;
+    const double wz = inside * dz;
+    m.n[i] += inside;
+    m.x[i] += wx;
+    m.y[i] += wy;
+    m.z[i] += wz;
+    m.xx[i] += wx * dx;
+    m.xy[i] += wx * dy;
+    m.xz[i] += wx * dz;
+    m.yy[i] += wy * dy;
+    m.yz[i] += wy * dz;
+    m.zz[i] += wz * dz;
+  }
+}
+
+/// Determinant of the covariance of lane i's neighbors; the query itself is among the sums, with zeros.
+inline double covariance_det(const Moments16& m, int i, double n) {
+  const double f = 1.0 / (n - 1.0);
+  const double xx = (m.xx[i] - m.x[i] * m.x[i] / n) * f;
+  const double xy = (m.xy[i] - m.x[i] * m.y[i] / n) * f;
+  const double xz = (m.xz[i] - m.x[i] * m.z[i] / n) * f;
+  const double yy = (m.yy[i] - m.y[i] * m.y[i] / n) * f;
+  const double yz = (m.yz[i] - m.y[i] * m.z[i] / n) * f;
+  const double zz = (m.zz[i] - m.z[i] * m.z[i] / n) * f;
+  return xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+}
+
+class NeighborhoodGroup {
+ public:
+  NeighborhoodGroup(const Tree& tree, const PointBlock& block, double radius_m)
+      : tree_(tree), sq_radius_(radius_m * radius_m), sq_reach_(static_cast<float>(sq_radius_ * (1.0 + kUndecided))), moments_{} {
+    q_ = {load(block.x), load(block.y), load(block.z)};
+    for (int i = 0; i < 16; ++i) {
+      lanes_.x[i] = block.x[i];
+      lanes_.y[i] = block.y[i];
+      lanes_.z[i] = block.z[i];
+    }
+  }
+
+  const Moments16& collect() {
+    walk(tree_, box_of(q_, mask_from_bits(kAllLanes)), *this);
+    return moments_;
+  }
+
+  Mask16 children(int, std::uint32_t, const Float16& sq_dist) const {
+    return less_equal(sq_dist, broadcast(sq_reach_));
+  }
+  bool still(float) const { return true; }
+  void block(const BoxNode& node, int c, std::uint32_t block) {
+    if (bits(less_equal(sq_dist_to_child(node, c, q_), broadcast(sq_reach_))) == 0) return;
+    const PointBlock& p = tree_.blocks[block];
+    const int n = tree_.points_in(block);
+    for (int k = 0; k < n; ++k) add_point(lanes_, p.x[k], p.y[k], p.z[k], sq_radius_, moments_);
+  }
+
+ private:
+  const Tree& tree_;
+  double sq_radius_;
+  float sq_reach_;
+  Lanes3 q_;
+  QueryLanes lanes_;
+  Moments16 moments_;
+};
+
+void neighborhood_shapes(const Bvh& cloud, double radius_m, std::size_t begin, std::size_t end,
+                         NeighborhoodShape& result) {
+  const Tree tree(cloud);
+  for (std::size_t block = begin; block < end; ++block) {
+    NeighborhoodGroup group(tree, tree.blocks[block], radius_m);
+    const Moments16& moments = group.collect();
+    for (int i = 0; i < tree.points_in(block); ++i) {
+      const std::size_t slot = block * kBlockSize + static_cast<std::size_t>(i);
+      const double n = moments.n[i] - 1.0;  // without the query itself
+      result.n_neighbors.data()[slot] = static_cast<std::uint32_t>(n);
+      result.covariance_det.data()[slot] = n >= 2.0 ? covariance_det(moments, i, n) : __builtin_nan("");
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cmap::CMAP_LANES

@@ -1,0 +1,121 @@
+// What all searches share: groups of sixteen queries, their boxes, and the walk down the tree.
+//
+// Every box distance is computed with the operations of the point distance, (dx dx + dy dy) + dz dz. Rounding is
+// monotone, so a box is never farther than a point in it, and pruning is exact.
+
+namespace cmap::CMAP_LANES {
+namespace {
+
+constexpr float kInfinity = __builtin_inff();
+
+struct Tree {
+  explicit Tree(const Bvh& index)
+      : blocks(index.points.blocks.data()),
+        original_index(index.points.original_index.data()),
+        n_blocks(index.points.blocks.size()),
+        n_points(index.points.size),
+        n_levels(static_cast<int>(index.boxes.size())) {
+    for (int l = 0; l < n_levels; ++l) {
+      boxes[l] = index.boxes[static_cast<std::size_t>(l)].data();
+      lowest_index[l] = index.lowest_index[static_cast<std::size_t>(l)].data();
+    }
+  }
+
+  const PointBlock* blocks;
+  const std::uint32_t* original_index;
+  std::size_t n_blocks;
+  std::size_t n_points;
+  int n_levels;
+  const BoxNode* boxes[8];  // 16^8 blocks are 2^36 points
+  const LowestIndex* lowest_index[8];
+
+  int points_in(std::size_t block) const {
+    return block + 1 == n_blocks ? static_cast<int>(n_points - block * kBlockSize) : static_cast<int>(kBlockSize);
+  }
+};
+
+/// Three coordinates of sixteen points, or one value each for all lanes.
+struct Lanes3 {
+  Float16 x, y, z;
+};
+
+struct LaneBox {
+  Lanes3 min, max;
+};
+
+inline Float16 sq_norm(const Float16& dx, const Float16& dy, const Float16& dz) { return dx * dx + dy * dy + dz * dz; }
+
+inline Float16 sq_dist_to(const Lanes3& q, float x, float y, float z) {
+  return sq_norm(q.x - broadcast(x), q.y - broadcast(y), q.z - broadcast(z));
+}
+
+inline Float16 gap(const Float16& min_a, const Float16& max_a, const Float16& min_b, const Float16& max_b) {
+  return max(max(min_a - max_b, min_b - max_a), broadcast(0.0f));
+}
+
+/// Squared distances between the node's sixteen children and one box.
+inline Float16 sq_dist_to_children(const BoxNode& node, const LaneBox& box) {
+  return sq_norm(gap(load(node.min_x), load(node.max_x), box.min.x, box.max.x),
+                 gap(load(node.min_y), load(node.max_y), box.min.y, box.max.y),
+                 gap(load(node.min_z), load(node.max_z), box.min.z, box.max.z));
+}
+
+/// Squared distances between sixteen queries and one child of the node.
+inline Float16 sq_dist_to_child(const BoxNode& node, int c, const Lanes3& q) {
+  return sq_norm(gap(broadcast(node.min_x[c]), broadcast(node.max_x[c]), q.x, q.x),
+                 gap(broadcast(node.min_y[c]), broadcast(node.max_y[c]), q.y, q.y),
+                 gap(broadcast(node.min_z[c]), broadcast(node.max_z[c]), q.z, q.z));
+}
+
+inline Lanes3 load_queries(const PointBlock& block, const Eigen::Vector3d& shift) {
+  const double* s = shift.data();
+  return {load(block.x) + broadcast(static_cast<float>(s[0])), load(block.y) + broadcast(static_cast<float>(s[1])),
+          load(block.z) + broadcast(static_cast<float>(s[2]))};
+}
+
+/// The box of the active lanes, in all lanes.
+inline LaneBox box_of(const Lanes3& q, Mask16 active) {
+  const auto low = [&](const Float16& v) { return broadcast(lowest(select(active, v, broadcast(kInfinity)))); };
+  const auto high = [&](const Float16& v) { return broadcast(highest(select(active, v, broadcast(-kInfinity)))); };
+  return {{low(q.x), low(q.y), low(q.z)}, {high(q.x), high(q.y), high(q.z)}};
+}
+
+inline int first_bit(std::uint32_t bits_set) { return __builtin_ctz(bits_set); }
+
+/// Walks down to the blocks that may matter. `reach` has
+///   Mask16 children(level, node, sq_dist)   which of the node's children to enter,
+///   bool still(sq_dist)                     whether a child seen earlier is still worth entering,
+///   void block(parent node, child, block)   what to do there.
+template <class Reach>
+inline void walk(const Tree& tree, const LaneBox& box, Reach& reach) {
+  struct Pending {
+    float sq_dist;
+    std::uint32_t node;
+    int level;
+  };
+  Pending stack[8 * kBlockSize];
+  int n_pending = 0;
+  stack[n_pending++] = {0.0f, 0, tree.n_levels - 1};
+  alignas(64) float sq_dist[kBlockSize];
+  while (n_pending > 0) {
+    const Pending top = stack[--n_pending];
+    if (!reach.still(top.sq_dist)) continue;
+    const BoxNode& node = tree.boxes[top.level][top.node];
+    const Float16 distances = sq_dist_to_children(node, box);
+    std::uint32_t enter = bits(reach.children(top.level, top.node, distances));
+    if (enter == 0) continue;
+    store(sq_dist, distances);
+    for (; enter != 0; enter &= enter - 1) {
+      const int c = first_bit(enter);
+      const std::uint32_t child = top.node * static_cast<std::uint32_t>(kBlockSize) + static_cast<std::uint32_t>(c);
+      if (top.level > 0) {
+        stack[n_pending++] = {sq_dist[c], child, top.level - 1};
+      } else if (reach.still(sq_dist[c])) {
+        reach.block(node, c, child);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cmap::CMAP_LANES

@@ -1,0 +1,168 @@
+#!/usr/bin/env python3
+"""Hold the oracle, and every expected.json, to values derived by hand (data_samples/README.md gives the derivations).
+
+Also checks CIEDE2000 against Sharma's 34 pairs and the nearest neighbors against brute force. Exit code 1 when anything is off.
+"""
+import json
+import sys
+from math import e, log, log10, pi, sqrt
+from pathlib import Path
+
+import numpy as np
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+from ciede2000 import ciede2000  # noqa: E402
+from neighbors import nearest, squared_distance  # noqa: E402
+from oracle import evaluate  # noqa: E402
+
+SAMPLES = HERE.parents[1] / "data_samples"
+WIDE = sqrt(24 / 7) / 4  # sqrt(3) (1/2 - 1/4) sqrt(8/7): corners of two cubes about one center
+BOTH = (0.75 + WIDE) / 2  # the mean of the two
+GEOMETRY_OF_TWO_POINTS = {
+    "chamfer.value": 1.625 + 8.25 / 3,
+    "chamfer.variants.l1_mean": (1.625 + 8.25 / 3) / 2,
+    "chamfer.variants.l2sq_sum": 9.0625 / 2 + 34.0625 / 3,
+    "chamfer.variants.l2_rms_mean": (sqrt(9.0625 / 2) + sqrt(34.0625 / 3)) / 2,
+    "chamfer.variants.truncated_l1_sum": 1.25 / 2 + 2.25 / 3,
+    "accuracy.per_threshold.0.value": sqrt(9.0625 / 2),
+    "accuracy.per_threshold.0.median": 1.625,
+    "accuracy.per_threshold.1.value": 0.25,
+    "accuracy.per_threshold.2.value": None,
+    "fitness.per_threshold.0.value": 1,
+    "fitness.per_threshold.1.value": 1 / 2,
+    "completeness.per_threshold.0.value": 2 / 3,
+    "completeness.per_threshold.1.value": 1 / 3,
+    "f_score.per_threshold.0.value": 0.8,
+    "f_score.per_threshold.1.value": 0.4,
+    "f_score.per_threshold.2.value": 0,
+    "overlap.value": 1 / 2,
+    "hausdorff.value": 5,
+    "hausdorff.estimate_to_reference.p95": 0.25 + 0.95 * 2.75,
+    "rmse.value": sqrt(9.0625 / 2),
+    "rmse.inlier_rmse": 0.25,
+    "average_wasserstein.value": None,
+}
+HAND = {
+    "identical": {
+        "chamfer.value": 0, "hausdorff.value": 0, "rmse.value": 0, "overlap.value": 1, "accuracy.per_threshold.1.value": 0,
+        "fitness.per_threshold.1.value": 1, "completeness.per_threshold.1.value": 1, "f_score.per_threshold.1.value": 1,
+        "average_wasserstein.value": 0, "average_wasserstein.n_voxels": 2, "spatial_consistency.value": None,
+        "color_distance.value": 0, "color_fidelity.value": None, "local_color_recall.value": 1, "delta_e.value": 0,
+        "color_psnr.value": None, "color_distance_exposure_free.value": 0,
+    },
+    "color_shift": {
+        "chamfer.value": 0, "color_distance.value": 0.2 * sqrt(3), "color_distance.value_8bit": 51 * sqrt(3),
+        "color_fidelity.value": -20 * log10(0.2 * sqrt(3)), "local_color_recall.value": 0, "local_color_recall.coverage": 1,
+        "local_color_recall.curve.value.4": 0, "local_color_recall.curve.value.5": 1, "local_color_recall.curve.area": 19 / 28,
+        "color_consistency.value": 0, "color_consistency.n_voxels": 2, "color_psnr.y": 20 * log10(5), "color_psnr.cb": None,
+        "color_distance_exposure_free.gains.0": 1 / 2, "color_distance_exposure_free.gains.1": 2 / 3,
+        "color_distance_exposure_free.gains.2": 3 / 4, "color_distance_exposure_free.value": 0,
+        "color_distance_by_range.per_range.0.value": 0.2 * sqrt(3), "color_distance_by_range.per_range.1.value": None,
+    },
+    "black_white_voxel": {
+        "color_consistency.value": 1, "color_consistency.value_x100": 100, "color_consistency.n_voxels": 1,
+        "color_consistency.n_voxels_below_min": 1, "color_consistency.reference.value": 0.9,
+        "color_distance.estimate_to_reference": 40 / 255, "color_distance.reference_to_estimate": sqrt(3) / 3,
+    },
+    "two_points": {
+        **GEOMETRY_OF_TWO_POINTS,
+        "color_distance.estimate_to_reference": 0.1, "color_distance.reference_to_estimate": (0.2 + sqrt(1.64)) / 3,
+        "color_distance.value": 0.05 + (0.2 + sqrt(1.64)) / 6, "local_color_recall.value": 1 / 3,
+        "local_color_recall.coverage": 1 / 3, "local_color_recall.conditional": 1, "delta_e.value": 0,
+        "color_distance_by_range.per_range.3.value": 0, "color_distance_by_range.per_range.2.value": None,
+    },
+    "no_color": {**GEOMETRY_OF_TWO_POINTS, "color_distance": None, "color_psnr": None},
+    "no_overlap": {
+        "chamfer.value": 256, "chamfer.variants.truncated_l1_sum": 2, "overlap.value": 0, "fitness.per_threshold.0.value": 0,
+        "f_score.per_threshold.0.value": 0, "accuracy.per_threshold.0.value": None, "rmse.inlier_rmse": None,
+        "average_wasserstein.value": None, "color_distance.value": sqrt(2), "local_color_recall.value": 0,
+        "local_color_recall.conditional": None, "delta_e.value": None, "color_distance_exposure_free.value": None,
+    },
+    "ties": {
+        "chamfer.value": 1, "color_distance.estimate_to_reference": 0, "color_distance.reference_to_estimate": 2 * sqrt(2) / 3,
+        "color_distance.value": sqrt(2) / 3, "local_color_recall.value": 2 / 3, "local_color_recall.coverage": 1,
+        "fitness.per_threshold.0.value": 1, "fitness.per_threshold.1.value": 1 / 3, "accuracy.per_threshold.1.value": 0,
+    },
+    "ties_grid": {
+        "chamfer.value": 2 * sqrt(3), "color_distance.estimate_to_reference": 52 / 255,
+        "color_distance.reference_to_estimate": 104 / 255, "color_distance.value": 78 / 255, "local_color_recall.value": 10 / 27,
+        "local_color_recall.coverage": 1, "fitness.per_threshold.0.value": 1, "fitness.per_threshold.1.value": 0,
+    },
+    "one_point": {
+        "chamfer.value": 1, "fitness.per_threshold.0.value": 1, "fitness.per_threshold.1.value": 0,
+        "color_distance.value": sqrt(3), "color_fidelity.value": -10 * log10(3), "delta_e.value": 100, "color_psnr.value": 0,
+        "local_color_recall.value": 0, "local_color_recall.coverage": 1, "color_consistency.value": None,
+        "color_distance_exposure_free.value": None, "average_wasserstein.value": None, "spatial_consistency.value": None,
+        "mean_map_entropy.value": None, "mean_map_entropy.n_left_out": 1,
+    },
+    "gaussian_voxels": {
+        "average_wasserstein.value": (0.75 + WIDE) / 3, "average_wasserstein.median": WIDE, "average_wasserstein.n_voxels": 3,
+        "average_wasserstein.cumulative.0.value_m": 0, "average_wasserstein.cumulative.5.value_m": WIDE / 2,
+        "average_wasserstein.cumulative.20.value_m": 0.75, "spatial_consistency.n_voxels": 3,
+        "spatial_consistency.value": (1 + 1 + (0.75 - BOTH) / BOTH) / 3,
+    },
+    "gaussian_rotated": {"average_wasserstein.value": sqrt(2 / 3 * (2.5 - 2 * sqrt(1.15625))), "spatial_consistency.value": None},
+    "entropy": {
+        "mean_map_entropy.value": 1.5 * log(2 * pi * e) + 0.5 * log(0.064), "mean_map_entropy.n": 1,
+        "mean_map_entropy.n_left_out": 6, "mean_map_entropy.reference.value": None, "mean_map_entropy.reference.n_left_out": 7,
+    },
+    "color_gate": {
+        "color_distance.value": 0.2, "color_distance.n_estimate": 1, "color_distance.n_unmatched_estimate": 1,
+        "color_distance.n_unmatched_reference": 1, "color_fidelity.value": -20 * log10(0.2),
+    },
+}
+
+
+def look_up(metrics, path):
+    """metrics["a"]["b"][0] for "a.b.0"."""
+    for key in path.split("."):
+        metrics = metrics[int(key)] if isinstance(metrics, list) else metrics[key]
+    return metrics
+
+
+def differs(got, wanted):
+    """Equal to 1e-12, or both null."""
+    return got is not None if wanted is None else got is None or abs(got - wanted) > 1e-12 * max(1.0, abs(wanted))
+
+
+def check_pair(name):
+    """Messages of the values of one micro pair that differ from the hand's, from the oracle and from expected.json."""
+    folder = SAMPLES / "micro" / name
+    expected = json.loads((folder / "expected.json").read_text())
+    fresh = evaluate(folder / "reference.ply", folder / "estimate.ply", expected["options"])["metrics"]
+    return ["%s: %s: %s is %r, by hand %r" % (name, source, path, look_up(metrics, path), wanted)
+            for path, wanted in HAND[name].items()
+            for source, metrics in (("oracle", fresh), ("expected.json", expected["metrics"]))
+            if differs(look_up(metrics, path), wanted)]
+
+
+def check_sharma():
+    """CIEDE2000 agrees with the 34 published pairs to their four decimals, both ways round."""
+    table = np.loadtxt(HERE / "sharma2005.txt")
+    a, b, wanted = table[:, :3], table[:, 3:6], table[:, 6]
+    errors = np.maximum(abs(ciede2000(a, b) - wanted), abs(ciede2000(b, a) - wanted))
+    return ["CIEDE2000 pair %d is off by %g" % (k + 1, errors[k]) for k in np.flatnonzero(errors > 5.1e-5)]
+
+
+def check_nearest():
+    """Nearest neighbors equal brute force (argmin takes the lowest index) on a lattice full of ties and duplicates."""
+    rng = np.random.default_rng(5)
+    points, targets = rng.integers(0, 9, (300, 3)) / 4, rng.integers(0, 5, (400, 3)) / 2
+    brute = np.argmin(squared_distance(points[:, None], targets[None]), axis=1)
+    return [] if np.array_equal(nearest(points, targets)[0], brute) else ["nearest differs from brute force"]
+
+
+def main():
+    np.seterr(divide="raise", invalid="raise")
+    micro = sorted(p.name for p in (SAMPLES / "micro").iterdir())
+    problems = [] if micro == sorted(HAND) else ["micro pairs %s, hand values %s" % (micro, sorted(HAND))]
+    for name in HAND:
+        problems += check_pair(name)
+    problems += check_sharma() + check_nearest()
+    print("\n".join(problems) or "%d hand values hold" % sum(map(len, HAND.values())))
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,147 @@
+"""Metrics of color, RGB in [0,1]. A Direction holds the nearest pairs of one direction: distance, own color, nearest point's color."""
+from collections import namedtuple
+
+import numpy as np
+
+from ciede2000 import ciede2000, lab_from_srgb
+from geometry import mean, quantile
+from neighbors import pairs_within, voxel_groups
+
+Direction = namedtuple("Direction", "distance own nearest")
+RANGE_EDGES_M = [0.0, 0.05, 0.1, 0.2, 0.5, 1.0]
+CURVE_TAUS = [k / 50 for k in range(1, 16)]
+BT709 = np.array([[0.2126, 0.7152, 0.0722], [-0.1146, -0.3854, 0.5], [0.5, -0.4542, -0.0458]])
+
+
+def within(pairs, low, high):
+    """The pairs with low < distance <= high."""
+    keep = (pairs.distance > low) & (pairs.distance <= high)
+    return Direction(*(x[keep] for x in pairs))
+
+
+def color_error(pairs):
+    """|c - c_nearest|, L2 norm of RGB."""
+    return np.linalg.norm(pairs.own - pairs.nearest, axis=1)
+
+
+def two_sided(e2r, r2e):
+    """(e2r mean + r2e mean) / 2 of the color errors, with both means; null without a pair in a direction."""
+    a, b = mean(color_error(e2r)), mean(color_error(r2e))
+    value = (a + b) / 2 if a is not None and b is not None else None
+    return {"value": value, "estimate_to_reference": a, "reference_to_estimate": b}
+
+
+def color_distance(e2r, r2e, max_distance):
+    """CD = 1/2 mean_i |c_i^s - c_pi(i)^r| + 1/2 mean_j |c_j^r - c_pi'(j)^s|, over the pairs within max_distance if given."""
+    gate = np.inf if max_distance is None else max_distance
+    kept = within(e2r, -1, gate), within(r2e, -1, gate)
+    record = two_sided(*kept)
+    record["value_8bit"] = None if record["value"] is None else 255 * record["value"]
+    record.update(n_estimate=len(kept[0].distance), n_reference=len(kept[1].distance))
+    if max_distance is not None:
+        record.update(n_unmatched_estimate=len(e2r.distance) - len(kept[0].distance),
+                      n_unmatched_reference=len(r2e.distance) - len(kept[1].distance))
+    return record
+
+
+def color_fidelity(cd):
+    """CF = -20 log10(CD); null for CD = 0 and for no CD."""
+    return {"value": float(-20 * np.log10(cd)) if cd else None}
+
+
+def nearest_colors_within(ref, ref_color, est, est_color, radius):
+    """For each reference point the smallest |c^s - c^r| over the estimated points within radius; infinite without any."""
+    best = np.full(len(ref), np.inf)
+    for first, i, j in pairs_within(ref, est, radius):
+        difference = np.linalg.norm(est_color[j] - ref_color[first + i], axis=1)
+        np.minimum.at(best, first + i, difference)
+    return best
+
+
+def recalled(best, tau):
+    """#{j : best_j <= 3 tau}; equality holds up to rounding (3 x 0.2 is not 0.6 in double)."""
+    return int(np.sum(best <= 3 * tau * (1 + 1e-12)))
+
+
+def local_color_recall(best, tau, curve):
+    """LCR = #{best <= 3 tau} / N_r, coverage = #{best finite} / N_r; the curve's area is trapezoidal, divided by the range of tau."""
+    n, covered, hits = len(best), int(np.sum(np.isfinite(best))), recalled(best, tau)
+    record = {"value": hits / n, "coverage": covered / n, "conditional": hits / covered if covered else None,
+              "n_reference": n, "n_covered": covered, "n_recalled": hits}
+    if curve:
+        values = [recalled(best, t) / n for t in CURVE_TAUS]
+        area = np.trapz(values, CURVE_TAUS) / (CURVE_TAUS[-1] - CURVE_TAUS[0])
+        record["curve"] = {"tau": CURVE_TAUS, "value": values, "area": float(area)}
+    return record
+
+
+def voxel_color_variance(points, colors, voxel, min_points):
+    """Mean over voxels of tr cov(c), n-1, for voxels of at least max(min_points, 2) points."""
+    _, group, count = voxel_groups(points, voxel)
+    centers = np.stack([np.bincount(group, colors[:, k]) for k in range(3)], axis=1) / count[:, None]
+    scatter = np.bincount(group, np.sum((colors - centers[group]) ** 2, axis=1))
+    used = count >= max(min_points, 2)
+    trace = scatter[used] / (count[used] - 1)
+    value = mean(trace)
+    return {"value": value, "value_x100": None if value is None else 100 * value, "median": quantile(trace, 0.5),
+            "n_voxels": int(used.sum()), "n_voxels_below_min": int((~used).sum())}
+
+
+def color_consistency(est, est_color, ref, ref_color, voxel, min_points):
+    """CCS of the estimate, and of the reference beside it."""
+    record = voxel_color_variance(est, est_color, voxel, min_points)
+    record["reference"] = voxel_color_variance(ref, ref_color, voxel, min_points)
+    return record
+
+
+def delta_e(e2r, r2e, radius):
+    """CIEDE2000 over the pairs within radius: mean, median, 95th percentile; value = mean of both directions' means."""
+    record = {"value": None}
+    for name, pairs in (("estimate_to_reference", e2r), ("reference_to_estimate", r2e)):
+        near = within(pairs, -1, radius)
+        error = ciede2000(lab_from_srgb(near.own), lab_from_srgb(near.nearest))
+        record[name] = {"mean": mean(error), "median": quantile(error, 0.5), "p95": quantile(error, 0.95), "n": len(error)}
+    a, b = record["estimate_to_reference"]["mean"], record["reference_to_estimate"]["mean"]
+    if a is not None and b is not None:
+        record["value"] = (a + b) / 2
+    return record
+
+
+def color_distance_by_range(e2r, r2e):
+    """CD of the pairs in each distance bin (lo, hi]; the first bin includes 0."""
+    records = []
+    for low, high in zip(RANGE_EDGES_M[:-1], RANGE_EDGES_M[1:]):
+        a, b = within(e2r, low or -1, high), within(r2e, low or -1, high)
+        records.append({"lo_m": low, "hi_m": high, **two_sided(a, b), "n_estimate": len(a.distance), "n_reference": len(b.distance)})
+    return {"per_range": records}
+
+
+def exposure_gains(e2r, radius):
+    """Per channel the median of c_ref / c_est over estimate-to-reference pairs within radius, both values non-zero."""
+    near = within(e2r, -1, radius)
+    usable = (near.own > 0) & (near.nearest > 0)
+    ratios = [near.nearest[usable[:, k], k] / near.own[usable[:, k], k] for k in range(3)]
+    return [quantile(r, 0.5) for r in ratios], len(near.distance)
+
+
+def color_distance_exposure_free(e2r, r2e, radius, max_distance):
+    """CD (over the pairs that CD takes) with the estimate's colors times the gains, unclipped."""
+    gains, n_pairs = exposure_gains(e2r, radius)
+    record = {"value": None, "estimate_to_reference": None, "reference_to_estimate": None}
+    if None not in gains:
+        gate = np.inf if max_distance is None else max_distance
+        a, b = within(e2r, -1, gate), within(r2e, -1, gate)
+        record = two_sided(a._replace(own=a.own * gains), b._replace(nearest=b.nearest * gains))
+    return {**record, "gains": gains, "n_pairs": n_pairs}
+
+
+def color_psnr(e2r, r2e):
+    """10 log10(1 / mse) for Y, Cb, Cr (BT.709, pc_error's four-digit coefficients), mse the larger of both directions.
+
+    mse below 1e-24 is rounding noise (of gray differences in Cb and Cr) and counts as 0; mse 0 gives null.
+    """
+    mse = [np.mean(((pairs.own - pairs.nearest) @ BT709.T) ** 2, axis=0) for pairs in (e2r, r2e)]
+    mse = [np.where(m < 1e-24, 0.0, m) for m in mse]
+    y, cb, cr = (float(-10 * np.log10(m)) if m > 0 else None for m in np.maximum(*mse))
+    return {"value": y, "y": y, "cb": cb, "cr": cr,
+            "mse": {"estimate_to_reference": mse[0].tolist(), "reference_to_estimate": mse[1].tolist()}}

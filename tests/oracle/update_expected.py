@@ -1,0 +1,25 @@
+#!/usr/bin/env python3
+"""Recompute the metrics of every data_samples/**/expected.json from the clouds beside it and the options in it."""
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from oracle import evaluate  # noqa: E402
+
+SAMPLES = Path(__file__).resolve().parents[2] / "data_samples"
+
+
+def main():
+    np.seterr(divide="raise", invalid="raise")
+    for path in sorted(SAMPLES.rglob("expected.json")):
+        options = json.loads(path.read_text())["options"]
+        metrics = evaluate(path.parent / "reference.ply", path.parent / "estimate.ply", options)["metrics"]
+        path.write_text(json.dumps({"options": options, "metrics": metrics}, indent=1, allow_nan=False) + "\n")
+        print(path.relative_to(SAMPLES))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,117 @@
+#include "cmap/spatial/radius.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include "cmap/core/color.hpp"
+#include "spatial/clouds.hpp"
+
+namespace cmap {
+namespace {
+
+float sq_color_distance(const Eigen::Vector3f& a, const Eigen::Vector3f& b) { return (a - b).squaredNorm(); }
+
+Eigen::Vector3f color(const PointCloud& cloud, std::size_t i) {
+  const RgbF c = rgb_255(cloud.colors, i);
+  return {c[0], c[1], c[2]};
+}
+
+struct ColoredIndex {
+  explicit ColoredIndex(const PointCloud& cloud)
+      : bvh(sort_points(cloud)), colors(sort_colors(cloud, bvh.points)), boxes(color_boxes(colors)) {}
+  Bvh bvh;
+  Array<ColorBlock> colors;
+  BoxLevels boxes;
+};
+
+void expect_equals_brute_force(const PointCloud& data, const PointCloud& queries, const ColorSearch& search, float start) {
+  const ColoredIndex index(data);
+  const ColoredIndex query(queries);
+  Array<float> best(queries.size(), start);
+  lower_color_distance(index.bvh, index.colors, index.boxes, query.bvh.points, query.colors, search, best);
+  ASSERT_EQ(best.size(), queries.size());
+  best = in_original_order(query.bvh.points, best);
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    float lowest = start;
+    for (std::size_t j = 0; j < data.size(); ++j) {
+      if ((queries.world(i) - data.world(j)).squaredNorm() <= search.radius_m * search.radius_m) {
+        lowest = std::min(lowest, sq_color_distance(color(queries, i), color(data, j)));
+      }
+    }
+    if (lowest > search.stop_at) {
+      ASSERT_EQ(best[i], lowest) << i;
+    } else {
+      ASSERT_LE(best[i], search.stop_at) << i;
+    }
+  }
+}
+
+TEST(LowerColorDistance, EqualsBruteForce) {
+  PointCloud data = test::sheet_cloud(3000, 1);
+  PointCloud queries = test::sheet_cloud(2000, 2);
+  test::paint(data, 3);
+  test::paint(queries, 4);
+  expect_equals_brute_force(data, queries, {0.5, 0.0f}, INFINITY);
+  expect_equals_brute_force(data, queries, {0.5, 5852.25f}, 5853.0f);
+  expect_equals_brute_force(data, queries, {2.0, 500.0f}, 1000.0f);
+}
+
+TEST(LowerColorDistance, TheRadiusIsInclusiveAndDecidedInDouble) {
+  PointCloud data, queries;
+  data.positions = {{0, 0, 0}};
+  data.colors = Array<Rgb8>{{10, 0, 0}};
+  queries.positions = {{0.5f, 0, 0}, {0.50000006f, 0, 0}};  // the float after 0.5
+  queries.colors = Array<Rgb8>{{13, 0, 0}, {13, 0, 0}};
+  const ColoredIndex index(data);
+  const ColoredIndex query(queries);
+  Array<float> best(2, 100.0f);
+  lower_color_distance(index.bvh, index.colors, index.boxes, query.bvh.points, query.colors, {0.5, 0.0f}, best);
+  best = in_original_order(query.bvh.points, best);
+  EXPECT_EQ(best[0], 9.0f);
+  EXPECT_EQ(best[1], 100.0f);
+}
+
+TEST(LowerColorDistance, DoneQueriesAreLeftAlone) {
+  PointCloud cloud = test::uniform_cloud(100, 5);
+  test::paint(cloud, 6);
+  const ColoredIndex index(cloud);
+  Array<float> best(100, 7.0f);
+  lower_color_distance(index.bvh, index.colors, index.boxes, index.bvh.points, index.colors, {1.0, 7.0f}, best);
+  EXPECT_EQ(best, Array<float>(100, 7.0f));
+}
+
+TEST(NeighborhoodShapes, EqualBruteForce) {
+  const PointCloud cloud = test::repeated(test::uniform_cloud(700, 7, 2.0f), 2);
+  const Bvh index(sort_points(cloud));
+  const NeighborhoodShape shape = neighborhood_shapes(index, 0.4);
+  const Array<std::uint32_t> n_neighbors = in_original_order(index.points, shape.n_neighbors);
+  const Array<double> dets = in_original_order(index.points, shape.covariance_det);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    std::vector<Eigen::Vector3d> neighbors;
+    for (std::size_t j = 0; j < cloud.size(); ++j) {
+      if (j != i && (cloud.world(j) - cloud.world(i)).squaredNorm() <= 0.16) neighbors.push_back(cloud.world(j));
+    }
+    ASSERT_EQ(n_neighbors[i], neighbors.size());
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const auto& p : neighbors) mean += p / static_cast<double>(neighbors.size());
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    for (const auto& p : neighbors) covariance += (p - mean) * (p - mean).transpose() / static_cast<double>(neighbors.size() - 1);
+    // Sums relative to the query instead of the mean: no more than a few digits lost of sixteen.
+    if (neighbors.size() <= 4) continue;
+    ASSERT_NEAR(dets[i], covariance.determinant(), 1e-10 * covariance.diagonal().prod());
+  }
+}
+
+TEST(NeighborhoodShapes, TooFewNeighborsHaveNoShape) {
+  PointCloud cloud;
+  cloud.positions = {{0, 0, 0}, {0.05f, 0, 0}, {5, 5, 5}};
+  const Bvh index(sort_points(cloud));
+  const NeighborhoodShape shape = neighborhood_shapes(index, 0.1);
+  EXPECT_EQ(in_original_order(index.points, shape.n_neighbors), (Array<std::uint32_t>{1, 1, 0}));
+  for (double det : shape.covariance_det) EXPECT_TRUE(std::isnan(det));
+  EXPECT_THROW(neighborhood_shapes(index, 0.0), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace cmap
