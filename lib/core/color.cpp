@@ -25,17 +25,20 @@ double hue_deg(double a, double b) {
   return hue < 0.0 ? hue + 360.0 : hue;
 }
 
+/// Opposite hues are 180 degrees apart up to rounding; the published pairs take them as not above 180.
+constexpr double kOpposite_deg = 180.0 + 1e-9;
+
 /// Hue difference in degrees (equation 10).
 double hue_difference(double hue1, double hue2) {
   const double difference = hue2 - hue1;
-  if (difference > 180.0) return difference - 360.0;
-  return difference < -180.0 ? difference + 360.0 : difference;
+  if (difference > kOpposite_deg) return difference - 360.0;
+  return difference < -kOpposite_deg ? difference + 360.0 : difference;
 }
 
 /// Mean hue in degrees of two chromatic colors (equation 14).
 double mean_hue(double hue1, double hue2) {
   const double sum = hue1 + hue2;
-  if (std::abs(hue1 - hue2) <= 180.0) return sum / 2.0;
+  if (std::abs(hue1 - hue2) <= kOpposite_deg) return sum / 2.0;
   return sum < 360.0 ? (sum + 360.0) / 2.0 : (sum - 360.0) / 2.0;
 }
 
@@ -62,7 +65,7 @@ Eigen::Vector3d srgb_to_lab(const Eigen::Vector3d& rgb) {
   xyz_from_rgb << 0.4124564, 0.3575761, 0.1804375,  //
       0.2126729, 0.7151522, 0.0721750,              //
       0.0193339, 0.1191920, 0.9503041;
-  const Eigen::Vector3d white(0.95047, 1.0, 1.08883);
+  const Eigen::Vector3d white = xyz_from_rgb.rowwise().sum();  // so that white is exactly L* = 100
   const Eigen::Vector3d f = (xyz_from_rgb * linear).cwiseQuotient(white).unaryExpr(&lab_curve);
   return {116.0 * f.y() - 16.0, 500.0 * (f.x() - f.y()), 200.0 * (f.y() - f.z())};
 }
@@ -104,8 +107,9 @@ double delta_e_2000(const Eigen::Vector3d& lab1, const Eigen::Vector3d& lab2) {
 }
 
 Eigen::Vector3d rgb_to_ycbcr709(const Eigen::Vector3d& rgb) {
-  const double y = 0.2126 * rgb.x() + 0.7152 * rgb.y() + 0.0722 * rgb.z();
-  return {y, (rgb.z() - y) / 1.8556, (rgb.x() - y) / 1.5748};
+  return {0.2126 * rgb.x() + 0.7152 * rgb.y() + 0.0722 * rgb.z(),
+          -0.1146 * rgb.x() - 0.3854 * rgb.y() + 0.5 * rgb.z(),
+          0.5 * rgb.x() - 0.4542 * rgb.y() - 0.0458 * rgb.z()};
 }
 
 }  // namespace cmap

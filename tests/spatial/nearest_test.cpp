@@ -7,21 +7,18 @@
 namespace cmap {
 namespace {
 
-/// The definition, point by point: float squared distance, ties to the lowest index.
+/// The definition, point by point: squared distance in double, ties to the lowest index.
 NearestNeighbors brute_force(const PointCloud& data, const PointCloud& queries) {
-  NearestNeighbors result{Array<std::uint32_t>(queries.size()), Array<double>(queries.size())};
+  NearestNeighbors result{Array<std::uint32_t>(queries.size()), Array<double>(queries.size(), INFINITY)};
   for (std::size_t i = 0; i < queries.size(); ++i) {
-    float best = INFINITY;
     for (std::size_t j = 0; j < data.size(); ++j) {
-      const Eigen::Vector3f d = queries.positions[i] - data.positions[j];
-      const float sq_dist = d.x() * d.x() + d.y() * d.y() + d.z() * d.z();
-      if (sq_dist < best) {
-        best = sq_dist;
+      const Eigen::Vector3d d = queries.positions[i].cast<double>() - data.positions[j].cast<double>();
+      const double sq_dist = d.x() * d.x() + d.y() * d.y() + d.z() * d.z();
+      if (sq_dist < result.sq_dist[i]) {
+        result.sq_dist[i] = sq_dist;
         result.index[i] = static_cast<std::uint32_t>(j);
       }
     }
-    const Eigen::Vector3d d = queries.positions[i].cast<double>() - data.positions[result.index[i]].cast<double>();
-    result.sq_dist[i] = d.x() * d.x() + d.y() * d.y() + d.z() * d.z();
   }
   return result;
 }
@@ -64,11 +61,22 @@ TEST(Nearest, TiesGoToTheLowestIndex) {
   expect_equals_brute_force(test::repeated(test::grid_cloud(8), 5), queries);
 }
 
+TEST(Nearest, DistancesThatFloatCannotTellApartAreDecidedInDouble) {
+  // All data on a sphere around the query up to the rounding of their coordinates.
+  PointCloud data = test::uniform_cloud(4000, 15, 2.0f);
+  for (Eigen::Vector3f& p : data.positions) p = (p - Eigen::Vector3f::Ones()).normalized() + Eigen::Vector3f(5, 6, 7);
+  PointCloud queries = test::uniform_cloud(100, 16, 1e-6f);
+  for (Eigen::Vector3f& p : queries.positions) p += Eigen::Vector3f(5, 6, 7);
+  expect_equals_brute_force(data, queries);
+}
+
 TEST(Nearest, DuplicatesByTheThousand) {
   PointCloud same = test::repeated(cloud_of({{1, 2, 3}}), 200000);
   const NearestNeighbors found = nearest_neighbors(same, same);
   EXPECT_EQ(found.index, Array<std::uint32_t>(same.size(), 0u));
   EXPECT_EQ(found.sq_dist, Array<double>(same.size(), 0.0));
+  const NearestNeighbors from_afar = nearest_neighbors(same, test::uniform_cloud(100000, 17));
+  EXPECT_EQ(from_afar.index, Array<std::uint32_t>(100000, 0u));
   expect_equals_brute_force(test::repeated(test::uniform_cloud(20, 5), 150), test::uniform_cloud(500, 6));
 }
 
@@ -107,8 +115,8 @@ TEST(Nearest, FlannAgrees) {
   const NearestField ours = find_nearest(IndexKind::kBvh, data, queries);
   const NearestField flann = find_nearest(IndexKind::kFlann, data, queries);
   for (std::size_t i = 0; i < queries.size; ++i) {
-    // FLANN decides in double, we in float: four roundings of 2^-24 at most.
-    ASSERT_NEAR(ours.sq_dist[i], flann.sq_dist[i], 5e-7 * flann.sq_dist[i]);
+    // The same three squares, perhaps added in another order: a few roundings of 2^-53.
+    ASSERT_NEAR(ours.sq_dist[i], flann.sq_dist[i], 1e-15 * flann.sq_dist[i]);
   }
 }
 

@@ -17,7 +17,8 @@ Eigen::Vector3d srgb_to_lab(const Eigen::Vector3d& rgb);
 /// CIEDE2000 color difference with kL = kC = kH = 1 (Sharma, Wu, Dalal 2005, equations 2 to 22).
 double delta_e_2000(const Eigen::Vector3d& lab1, const Eigen::Vector3d& lab2);
 
-/// Y, Cb, Cr of BT.709 from RGB in [0,1]; Y in [0,1], Cb and Cr in [-0.5,0.5] (as MPEG's pc_error computes them).
+/// Y, Cb, Cr of BT.709 from RGB in [0,1], with the four-digit coefficients of MPEG's pc_error; Y in [0,1], Cb and Cr
+/// in [-0.5,0.5].
 Eigen::Vector3d rgb_to_ycbcr709(const Eigen::Vector3d& rgb);
 
 }  // namespace cmap

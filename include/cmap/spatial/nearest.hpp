@@ -15,10 +15,10 @@ struct NearestField {
 
 enum class IndexKind { kBvh, kFlann };
 
-/// Exact nearest neighbors without a distance limit. "Nearest" is decided by the squared distance in float,
-/// (dx dx + dy dy) + dz dz without fused operations; among equal ones the lowest original index wins. The result is
-/// bitwise the same for any number of threads and every instruction set. Clouds with different origins are compared
-/// after moving the queries by the difference, rounded to float.
+/// Exact nearest neighbors without a distance limit, decided by the squared distance (dx dx + dy dy) + dz dz in double
+/// of the stored offsets; among equally near points the lowest original index wins. The result is bitwise the same for
+/// any number of threads and every instruction set. Clouds with different origins are compared after moving the queries
+/// by the difference, rounded to float.
 NearestField find_nearest(const Bvh& index, const PointBlocks& queries);
 
 /// The same through FLANN's exact kd-tree: the second opinion. Ties are FLANN's choice.

@@ -23,7 +23,9 @@ void lower_color_distance(const Bvh& index, const Array<ColorBlock>& index_color
 /// Number and covariance determinant of every point's neighbors within a radius, by slot.
 struct NeighborhoodShape {
   Array<std::uint32_t> n_neighbors;  ///< the point itself left out; duplicates of it count
-  Array<double> covariance_det;      ///< m^6, n - 1 denominator; NaN for fewer than 2 neighbors
+  /// m^6, n - 1 denominator; NaN for fewer than 2 neighbors, 0 for flat ones: not above 1e-14 (trace / 3)^3, where the
+  /// sign would be rounding noise.
+  Array<double> covariance_det;
 };
 
 /// Visits all neighbors at distance <= radius_m of every point, in double. Deterministic for any number of threads.

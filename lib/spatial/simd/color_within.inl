@@ -37,14 +37,13 @@ class ColorGroup {
 
   bool still(float) const { return bound_ > -kInfinity; }
 
-  void block(const BoxNode& node, int c, std::uint32_t block) {
-    const Mask16 near = less_equal(sq_dist_to_child(node, c, q_), broadcast(sq_radius_perhaps_)) & active_;
-    if (bits(near) == 0) return;
-    const Float16 color_dist = sq_dist_to_child(color_boxes_[0][block / kBlockSize], c, color_);
-    if (bits(near & less(color_dist, best_)) != 0) scan(block);
+  bool matters(int level, std::uint32_t node, int c) const {
+    const Mask16 near =
+        less_equal(sq_dist_to_child(tree_.boxes[level][node], c, q_), broadcast(sq_radius_perhaps_)) & active_;
+    if (bits(near) == 0) return false;
+    return bits(near & less(sq_dist_to_child(color_boxes_[level][node], c, color_), best_)) != 0;
   }
 
- private:
   void scan(std::uint32_t block) {
     const PointBlock& p = tree_.blocks[block];
     const ColorBlock& colors = colors_[block];
@@ -64,6 +63,7 @@ class ColorGroup {
     if (lowered) update_active();
   }
 
+ private:
   std::uint32_t within_in_double(std::uint32_t lanes, const PointBlock& p, std::size_t k) const {
     std::uint32_t within = 0;
     for (; lanes != 0; lanes &= lanes - 1) {

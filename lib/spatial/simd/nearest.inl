@@ -6,14 +6,32 @@ namespace {
 constexpr std::uint32_t kAllLanes = 0xffff;
 constexpr std::uint32_t kUnknownIndex = ~0u;
 
-/// The search of one group: the best squared distance of every lane and the block that has it. The index is found at
-/// the end, or earlier for lanes with ties.
+/// Float squared distances closer than this to each other are compared again in double: each has a relative error
+/// below five roundings of 2^-24.
+constexpr float kReach = 1.000001f;
+
+/// A candidate as it is compared in the end: in double, ties by original index.
+struct Candidate {
+  double sq_dist;
+  std::uint32_t index;
+  std::uint32_t slot;
+};
+
+inline bool comes_before(const Candidate& a, const Candidate& b) {
+  return a.sq_dist < b.sq_dist || (a.sq_dist == b.sq_dist && a.index < b.index);
+}
+
+inline double gap_in_double(double v, double low, double high) { return v < low ? low - v : v > high ? v - high : 0.0; }
+
+/// The search of one group: every lane's best squared distance in float and the block that has it. Candidates within
+/// rounding of each other are told apart in double, in `exact_`; otherwise the point in the block is found at the end.
 class NearestGroup {
  public:
-  NearestGroup(const Tree& tree, const Lanes3& queries) : tree_(tree), q_(queries), box_(box_of(queries, mask_from_bits(kAllLanes))) {
+  NearestGroup(const Tree& tree, const Lanes3& queries)
+      : tree_(tree), q_(queries), box_(box_of(queries, mask_from_bits(kAllLanes))) {
     for (int lane = 0; lane < 16; ++lane) {
       block_[lane] = 0;
-      index_[lane] = kUnknownIndex;
+      exact_[lane].index = kUnknownIndex;
     }
   }
 
@@ -21,116 +39,137 @@ class NearestGroup {
   void start_from(const std::uint32_t* guesses, int n) {
     for (n_scanned_ = 0; n_scanned_ < n; ++n_scanned_) {
       scanned_[n_scanned_] = guesses[n_scanned_];
-      scan(guesses[n_scanned_]);
+      compare_with(guesses[n_scanned_]);
     }
   }
 
   void search() { walk(tree_, box_, *this); }
 
   Mask16 children(int level, std::uint32_t node, const Float16& sq_dist) const {
-    const Mask16 near = less_equal(sq_dist, broadcast(bound_));
-    const std::uint32_t tied = bits(near & equal(sq_dist, broadcast(bound_)));
-    if (tied == 0 || bound_index_ == kUnknownIndex) return near;
-    // Equally near children matter only if a lower original index is below them.
-    std::uint32_t enter = bits(near);
-    for (std::uint32_t rest = tied; rest != 0; rest &= rest - 1) {
-      const int c = first_bit(rest);
-      if (tree_.lowest_index[level][node].child[c] >= bound_index_) enter &= ~(1u << c);
+    std::uint32_t enter = bits(less_equal(sq_dist, broadcast(bound_ * kReach)));
+    std::uint32_t tied = enter & ~bits(less(sq_dist, broadcast(bound_)));
+    if (!any_exact_) tied = 0;
+    for (; tied != 0; tied &= tied - 1) {
+      const int c = first_bit(tied);
+      if (!can_settle(level, node, c, kAllLanes)) enter &= ~(1u << c);
     }
     return mask_from_bits(enter);
   }
 
-  bool still(float sq_dist) const { return sq_dist <= bound_; }
+  bool still(float sq_dist) const { return sq_dist <= bound_ * kReach; }
 
-  void block(const BoxNode& node, int c, std::uint32_t block) {
+  bool matters(int level, std::uint32_t node, int c) const {
+    const Float16 sq_dist = sq_dist_to_child(tree_.boxes[level][node], c, q_);
+    const std::uint32_t within = bits(less_equal(sq_dist, best_ * broadcast(kReach)));
+    if (within == 0 || !any_exact_ || bits(less(sq_dist, best_)) != 0) return within != 0;
+    return can_settle(level, node, c, within);
+  }
+
+  void scan(std::uint32_t block) {
     for (int i = 0; i < n_scanned_; ++i) {
       if (scanned_[i] == block) return;
     }
-    if (bits(less_equal(sq_dist_to_child(node, c, q_), best_)) != 0) scan(block);
+    compare_with(block);
   }
 
-  /// Slot of every lane's nearest point.
+  /// Slot of a lane's nearest point.
   std::uint32_t slot(int lane) const {
+    if (exact_[lane].index != kUnknownIndex) return exact_[lane].slot;
     alignas(64) float best[16];
     store(best, best_);
-    return slot_in_block(lane, block_[lane], best[lane]);
+    return exact_in_block(lane, block_[lane], best[lane]).slot;
   }
   std::uint32_t block_of(int lane) const { return block_[lane]; }
 
  private:
-  void scan(std::uint32_t block) {
+  void compare_with(std::uint32_t block) {
     const PointBlock& points = tree_.blocks[block];
     Float16 nearest = broadcast(kInfinity);
     for (std::size_t k = 0; k < kBlockSize; ++k) {
       nearest = min(sq_dist_to(q_, points.x[k], points.y[k], points.z[k]), nearest);
     }
-    const std::uint32_t tied = bits(equal(nearest, best_));
-    if (tied != 0) settle_ties(tied, block);
-    const std::uint32_t nearer = bits(less(nearest, best_));
-    if (nearer != 0) {
-      best_ = min(nearest, best_);
-      for (std::uint32_t rest = nearer; rest != 0; rest &= rest - 1) {
-        block_[first_bit(rest)] = block;
-        index_[first_bit(rest)] = kUnknownIndex;
-      }
-      bound_ = highest(best_);
+    const std::uint32_t within = bits(less_equal(nearest, best_ * broadcast(kReach)));
+    if (within == 0) return;
+    const std::uint32_t nearer = bits(less(nearest * broadcast(kReach), best_));
+    if ((within & ~nearer) != 0) settle(within & ~nearer, block, min(nearest, best_));
+    for (std::uint32_t rest = nearer; rest != 0; rest &= rest - 1) {
+      block_[first_bit(rest)] = block;
+      exact_[first_bit(rest)].index = kUnknownIndex;
     }
-    if ((nearer | tied) != 0) update_bound_index();
+    best_ = min(nearest, best_);
+    bound_ = highest(best_);
   }
 
-  /// Lanes whose best distance also occurs in `block`: the lowest original index wins.
-  void settle_ties(std::uint32_t tied, std::uint32_t block) {
+  /// Lanes whose best so far and best in `block` are too close for float.
+  void settle(std::uint32_t lanes, std::uint32_t block, const Float16& lowest_sq_dist) {
     alignas(64) float best[16];
-    store(best, best_);
-    for (; tied != 0; tied &= tied - 1) {
-      const int lane = first_bit(tied);
-      if (best[lane] == kInfinity) continue;
-      if (index_[lane] == kUnknownIndex) {
-        index_[lane] = tree_.original_index[slot_in_block(lane, block_[lane], best[lane])];
-      }
-      const std::uint32_t other = tree_.original_index[slot_in_block(lane, block, best[lane])];
-      if (other < index_[lane]) {
-        index_[lane] = other;
+    store(best, lowest_sq_dist);
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int lane = first_bit(lanes);
+      if (exact_[lane].index == kUnknownIndex) exact_[lane] = exact_in_block(lane, block_[lane], best[lane]);
+      const Candidate other = exact_in_block(lane, block, best[lane]);
+      if (comes_before(other, exact_[lane])) {
+        exact_[lane] = other;
         block_[lane] = block;
       }
     }
-    any_index_known_ = true;
+    any_exact_ = true;
   }
 
-  void update_bound_index() {
-    bound_index_ = kUnknownIndex;
-    if (!any_index_known_) return;
-    std::uint32_t highest_index = 0;
-    for (int lane = 0; lane < 16; ++lane) highest_index = index_[lane] > highest_index ? index_[lane] : highest_index;
-    bound_index_ = highest_index;
+  /// Whether a child no nearer than the best so far may still win one of the lanes in double or by its index. Without
+  /// this, many copies of one point would all be visited.
+  bool can_settle(int level, std::uint32_t node, int c, std::uint32_t lanes) const {
+    alignas(64) float best[16], x[16], y[16], z[16];
+    store(best, best_);
+    store(x, q_.x);
+    store(y, q_.y);
+    store(z, q_.z);
+    const BoxNode& boxes = tree_.boxes[level][node];
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int lane = first_bit(lanes);
+      const double dx = gap_in_double(x[lane], boxes.min_x[c], boxes.max_x[c]);
+      const double dy = gap_in_double(y[lane], boxes.min_y[c], boxes.max_y[c]);
+      const double dz = gap_in_double(z[lane], boxes.min_z[c], boxes.max_z[c]);
+      const double sq_dist = dx * dx + dy * dy + dz * dz;
+      const Candidate& exact = exact_[lane];
+      if (exact.index == kUnknownIndex ? sq_dist <= static_cast<double>(best[lane] * kReach)
+                                       : comes_before({sq_dist, tree_.lowest_index[level][node].child[c], 0}, exact)) {
+        return true;
+      }
+    }
+    return false;
   }
 
-  /// The slot in `block` at exactly the lane's best distance; of several, the one of the lowest original index.
-  std::uint32_t slot_in_block(int lane, std::uint32_t block, float best) const {
+  /// The lane's nearest point of a block in double, among those within reach of the float distance `best`.
+  Candidate exact_in_block(int lane, std::uint32_t block, float best) const {
     alignas(64) float x[16], y[16], z[16];
     store(x, q_.x);
     store(y, q_.y);
     store(z, q_.z);
-    const PointBlock& points = tree_.blocks[block];
-    const Lanes3 p{load(points.x), load(points.y), load(points.z)};
-    std::uint32_t at_best = bits(equal(sq_dist_to(p, x[lane], y[lane], z[lane]), broadcast(best)));
-    std::uint32_t slot = block * static_cast<std::uint32_t>(kBlockSize) + static_cast<std::uint32_t>(first_bit(at_best));
-    for (at_best &= at_best - 1; at_best != 0; at_best &= at_best - 1) {
-      const std::uint32_t other = block * static_cast<std::uint32_t>(kBlockSize) + static_cast<std::uint32_t>(first_bit(at_best));
-      if (tree_.original_index[other] < tree_.original_index[slot]) slot = other;
+    const PointBlock& p = tree_.blocks[block];
+    const Float16 sq_dist = sq_dist_to({load(p.x), load(p.y), load(p.z)}, x[lane], y[lane], z[lane]);
+    std::uint32_t within = bits(less_equal(sq_dist, broadcast(best * kReach)));
+    Candidate nearest{static_cast<double>(kInfinity), kUnknownIndex, 0};
+    for (; within != 0; within &= within - 1) {
+      const auto k = static_cast<std::uint32_t>(first_bit(within));
+      const double dx = static_cast<double>(x[lane]) - static_cast<double>(p.x[k]);
+      const double dy = static_cast<double>(y[lane]) - static_cast<double>(p.y[k]);
+      const double dz = static_cast<double>(z[lane]) - static_cast<double>(p.z[k]);
+      const std::uint32_t slot = block * static_cast<std::uint32_t>(kBlockSize) + k;
+      const Candidate candidate{dx * dx + dy * dy + dz * dz, tree_.original_index[slot], slot};
+      if (comes_before(candidate, nearest)) nearest = candidate;
     }
-    return slot;
+    return nearest;
   }
 
   const Tree& tree_;
   const Lanes3 q_;
   const LaneBox box_;
   Float16 best_ = broadcast(kInfinity);
-  float bound_ = __FLT_MAX__;  // an absent child is at infinity, never within the bound
-  std::uint32_t bound_index_ = kUnknownIndex;
-  bool any_index_known_ = false;
+  float bound_ = __FLT_MAX__ / 2;  // an absent child is at infinity, never within the bound
+  bool any_exact_ = false;
   std::uint32_t block_[16];
-  std::uint32_t index_[16];
+  Candidate exact_[16];
   std::uint32_t scanned_[4];
   int n_scanned_ = 0;
 };

@@ -35,7 +35,10 @@ inline void add_point(const QueryLanes& q, double px, double py, double pz, doub
   }
 }
 
-/// Determinant of the covariance of lane i's neighbors; the query itself is among the sums, with zeros.
+/// A determinant this small beside (trace / 3)^3 is the rounding noise of a flat neighborhood.
+constexpr double kFlat = 1e-14;
+
+/// Determinant of the covariance of lane i's neighbors, 0 if they are flat; the query itself adds zeros to the sums.
 inline double covariance_det(const Moments16& m, int i, double n) {
   const double f = 1.0 / (n - 1.0);
   const double xx = (m.xx[i] - m.x[i] * m.x[i] / n) * f;
@@ -44,7 +47,9 @@ inline double covariance_det(const Moments16& m, int i, double n) {
   const double yy = (m.yy[i] - m.y[i] * m.y[i] / n) * f;
   const double yz = (m.yz[i] - m.y[i] * m.z[i] / n) * f;
   const double zz = (m.zz[i] - m.z[i] * m.z[i] / n) * f;
-  return xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+  const double det = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+  const double third_of_trace = (xx + yy + zz) / 3.0;
+  return det > kFlat * third_of_trace * third_of_trace * third_of_trace ? det : 0.0;
 }
 
 class NeighborhoodGroup {
@@ -68,8 +73,10 @@ class NeighborhoodGroup {
     return less_equal(sq_dist, broadcast(sq_reach_));
   }
   bool still(float) const { return true; }
-  void block(const BoxNode& node, int c, std::uint32_t block) {
-    if (bits(less_equal(sq_dist_to_child(node, c, q_), broadcast(sq_reach_))) == 0) return;
+  bool matters(int level, std::uint32_t node, int c) const {
+    return bits(less_equal(sq_dist_to_child(tree_.boxes[level][node], c, q_), broadcast(sq_reach_))) != 0;
+  }
+  void scan(std::uint32_t block) {
     const PointBlock& p = tree_.blocks[block];
     const int n = tree_.points_in(block);
     for (int k = 0; k < n; ++k) add_point(lanes_, p.x[k], p.y[k], p.z[k], sq_radius_, moments_);

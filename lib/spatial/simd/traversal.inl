@@ -83,9 +83,10 @@ inline LaneBox box_of(const Lanes3& q, Mask16 active) {
 inline int first_bit(std::uint32_t bits_set) { return __builtin_ctz(bits_set); }
 
 /// Walks down to the blocks that may matter. `reach` has
-///   Mask16 children(level, node, sq_dist)   which of the node's children to enter,
-///   bool still(sq_dist)                     whether a child seen earlier is still worth entering,
-///   void block(parent node, child, block)   what to do there.
+///   Mask16 children(level, node, sq_dist)   which children may matter, by their distances to the group's box,
+///   bool still(sq_dist)                     whether a child at this distance still may, after what was found since,
+///   bool matters(level, node, c)            whether child c of the node matters to any single lane,
+///   void scan(block)                        what to do with a block that does.
 template <class Reach>
 inline void walk(const Tree& tree, const LaneBox& box, Reach& reach) {
   struct Pending {
@@ -100,8 +101,10 @@ inline void walk(const Tree& tree, const LaneBox& box, Reach& reach) {
   while (n_pending > 0) {
     const Pending top = stack[--n_pending];
     if (!reach.still(top.sq_dist)) continue;
-    const BoxNode& node = tree.boxes[top.level][top.node];
-    const Float16 distances = sq_dist_to_children(node, box);
+    if (top.level + 1 < tree.n_levels && !reach.matters(top.level + 1, top.node / kBlockSize, static_cast<int>(top.node % kBlockSize))) {
+      continue;
+    }
+    const Float16 distances = sq_dist_to_children(tree.boxes[top.level][top.node], box);
     std::uint32_t enter = bits(reach.children(top.level, top.node, distances));
     if (enter == 0) continue;
     store(sq_dist, distances);
@@ -110,8 +113,8 @@ inline void walk(const Tree& tree, const LaneBox& box, Reach& reach) {
       const std::uint32_t child = top.node * static_cast<std::uint32_t>(kBlockSize) + static_cast<std::uint32_t>(c);
       if (top.level > 0) {
         stack[n_pending++] = {sq_dist[c], child, top.level - 1};
-      } else if (reach.still(sq_dist[c])) {
-        reach.block(node, c, child);
+      } else if (reach.still(sq_dist[c]) && reach.matters(0, top.node, c)) {
+        reach.scan(child);
       }
     }
   }

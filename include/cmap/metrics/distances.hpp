@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace cmap {
+
+/// The distances d <= threshold_m of one direction. Mean, RMSE and median are NaN where there are none.
+struct WithinThreshold {
+  double threshold_m = 0.0;
+  std::uint64_t n = 0;
+  double mean_m = 0.0;
+  double rmse_m = 0.0;
+  double median_m = 0.0;
+};
+
+/// Everything the geometric metrics need of one direction's nearest distances, from one pass over them.
+struct DistanceStats {
+  std::uint64_t n = 0;
+  double mean_m = 0.0;
+  double mean_sq_m2 = 0.0;
+  double mean_truncated_m = 0.0;  ///< each distance capped at the truncation
+  double max_m = 0.0;
+  double p95_m = 0.0;  ///< type-7 percentiles
+  double p99_m = 0.0;
+  std::vector<WithinThreshold> within;  ///< in the order of the thresholds asked for
+
+  double share_within(std::size_t i) const { return static_cast<double>(within[i].n) / static_cast<double>(n); }
+};
+
+/// Statistics of d = sqrt(sq_dist); "within" means d <= threshold, decided in double. sq_dist must not be empty.
+/// Bitwise the same for any number of threads.
+DistanceStats distance_stats(std::span<const double> sq_dist, std::span<const double> thresholds_m, double truncation_m);
+
+}  // namespace cmap

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "cmap/metrics/map_pair.hpp"
+
+namespace cmap {
+
+/// What local color recall finds at a reference point.
+enum class RecallClass : std::uint8_t { kNotCovered = 0, kWrongColor = 1, kRecalled = 2 };
+
+struct LocalColorRecallOptions {
+  double tau = 0.1;       ///< a color is right within 3 tau (unit RGB)
+  double radius_m = 0.5;  ///< r_g
+  bool curve = false;     ///< also for tau = 0.02, 0.04 ... 0.30
+};
+
+struct RecallCurve {
+  std::vector<double> tau;
+  std::vector<double> value;
+  double area = 0.0;  ///< trapezoids under the curve over its range of tau, divided by that range
+};
+
+/// Local color recall LCR (paper): the share of reference points with an estimated point within radius_m whose color
+/// differs by at most 3 tau. 8-bit colors are compared in exact integers, distances in double.
+struct LocalColorRecall {
+  std::uint64_t n_reference = 0;
+  std::uint64_t n_covered = 0;   ///< with any estimated point within the radius
+  std::uint64_t n_recalled = 0;
+  RecallCurve curve;             ///< empty unless asked for
+  Array<RecallClass> classes;    ///< by reference slot
+
+  double value() const { return static_cast<double>(n_recalled) / static_cast<double>(n_reference); }
+  double coverage() const { return static_cast<double>(n_covered) / static_cast<double>(n_reference); }
+  /// value / coverage; NaN where nothing is covered.
+  double conditional() const { return static_cast<double>(n_recalled) / static_cast<double>(n_covered); }
+};
+
+/// Both maps need colors (std::invalid_argument). The same for any number of threads.
+LocalColorRecall local_color_recall(const MapPair& pair, const LocalColorRecallOptions& options);
+
+}  // namespace cmap

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "cmap/metrics/map_pair.hpp"
+
+namespace cmap {
+
+/// World index of a voxel: floor(world / voxel_m) per axis.
+using VoxelIndex = std::array<std::int64_t, 3>;
+
+/// The points of one voxel as a Gaussian, meters.
+struct Gaussian {
+  std::uint64_t n = 0;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();  ///< sum (x - mean)(x - mean)^T
+  Eigen::Matrix3d covariance() const { return scatter / static_cast<double>(n - 1); }
+};
+
+/// A voxel that holds at least the asked number of points of both maps. Means are relative to the voxel's center.
+struct GaussianPair {
+  VoxelIndex index;
+  Gaussian reference;
+  Gaussian estimate;
+};
+
+/// The voxels of both maps with at least min_points (and 2) points each, ordered by index. Throws UsageError for voxels
+/// too small to be counted. Deterministic.
+std::vector<GaussianPair> gaussian_pairs(const MapPair& pair, double voxel_m, std::uint64_t min_points);
+
+/// 2-Wasserstein distance (m) of two Gaussians with at least 2 points each:
+/// W^2 = |m1 - m2|^2 + tr(S1 + S2 - 2 (S1^1/2 S2 S1^1/2)^1/2), covariances with n - 1. A W^2 below
+/// 1e-12 (tr S1 + tr S2) is rounding noise and counts as 0.
+double wasserstein_distance(const Gaussian& a, const Gaussian& b);
+
+struct VoxelDistance {
+  VoxelIndex index;
+  double distance_m;
+};
+
+/// The Wasserstein distance of every pair, in order.
+std::vector<VoxelDistance> wasserstein_distances(std::span<const GaussianPair> pairs);
+
+/// Average Wasserstein distance AWD and its distribution; NaN without voxels.
+struct AverageWasserstein {
+  double mean_m = 0.0;
+  double median_m = 0.0;
+  std::vector<double> quantiles_m;  ///< at shares 0, 0.05 ... 1
+  std::uint64_t n_voxels = 0;
+};
+AverageWasserstein average_wasserstein(std::span<const VoxelDistance> voxels);
+
+/// Spatial consistency SCS: the mean over voxels of the coefficient of variation (population standard deviation / mean)
+/// of the distances of the other voxels within +- radius_voxels on every axis. Voxels without others, or whose others'
+/// mean is 0, are skipped; NaN if that leaves none.
+struct SpatialConsistency {
+  double value = 0.0;
+  std::uint64_t n_voxels = 0;  ///< voxels in the mean
+};
+SpatialConsistency spatial_consistency(std::span<const VoxelDistance> voxels, int radius_voxels);
+
+}  // namespace cmap

@@ -1,0 +1,57 @@
+#include "cmap/metrics/color_consistency.hpp"
+
+#include <array>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <vector>
+
+#include "cmap/metrics/order_statistics.hpp"
+#include "metrics/voxels.hpp"
+
+namespace cmap {
+namespace {
+
+/// Sums of a voxel's colors in 1/255 units: exact for 8-bit colors.
+struct ColorSums {
+  std::uint64_t n = 0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double sum_sq = 0.0;
+
+  /// Trace of the covariance in unit RGB squared.
+  double covariance_trace() const {
+    const auto count = static_cast<double>(n);
+    return std::max(0.0, (sum_sq - sum.squaredNorm() / count) / (count - 1.0)) / (255.0 * 255.0);
+  }
+};
+
+}  // namespace
+
+ColorConsistency color_consistency(const IndexedMap& map, double voxel_m, std::uint64_t min_points) {
+  if (!map.has_color()) throw std::invalid_argument("color_consistency: the map needs colors");
+  const VoxelFrame frame(bounds(map.index.points), voxel_m);
+  VoxelMap<ColorSums> voxels;
+  for (std::size_t slot = 0; slot < map.size(); ++slot) {
+    const Eigen::Vector3d color = map.color(slot);
+    ColorSums& sums = voxels[frame.key(map.index.points.world(slot))];
+    ++sums.n;
+    sums.sum += color;
+    sums.sum_sq += color.squaredNorm();
+  }
+
+  ColorConsistency consistency;
+  std::vector<double> traces;
+  for (const auto& [key, sums] : voxels.entries()) {
+    if (sums.n >= min_points) {
+      traces.push_back(sums.covariance_trace());
+    } else {
+      ++consistency.n_voxels_below_min;
+    }
+  }
+  consistency.n_voxels = traces.size();
+  consistency.mean = std::accumulate(traces.begin(), traces.end(), 0.0) / static_cast<double>(traces.size());
+  consistency.median = quantiles(traces, std::array{0.5}).front();
+  return consistency;
+}
+
+}  // namespace cmap

@@ -1,0 +1,109 @@
+#include "cmap/metrics/wasserstein.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "cmap/core/parallel.hpp"
+#include "cmap/metrics/order_statistics.hpp"
+#include "metrics/voxels.hpp"
+
+namespace cmap {
+namespace {
+
+/// Sums about the voxel's center, so that far coordinates cancel nothing.
+struct MomentSums {
+  std::uint64_t n = 0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d sum_sq = Eigen::Matrix3d::Zero();
+
+  Gaussian gaussian() const {
+    const Eigen::Vector3d mean = sum / static_cast<double>(n);
+    return {n, mean, sum_sq - static_cast<double>(n) * mean * mean.transpose()};
+  }
+};
+
+using Moments = VoxelMap<MomentSums>;
+
+Moments voxel_moments(const PointBlocks& points, const VoxelFrame& frame) {
+  Moments voxels;
+  for (std::size_t slot = 0; slot < points.size; ++slot) {
+    const Eigen::Vector3d world = points.world(slot);
+    const VoxelKey key = frame.key(world);
+    const Eigen::Vector3d x = world - frame.center(key);
+    MomentSums& sums = voxels[key];
+    ++sums.n;
+    sums.sum += x;
+    sums.sum_sq += x * x.transpose();
+  }
+  return voxels;
+}
+
+Box3d united(const Box3d& a, const Box3d& b) { return {a.min.cwiseMin(b.min), a.max.cwiseMax(b.max)}; }
+
+/// Symmetric square root of a covariance.
+Eigen::Matrix3d root(const Eigen::Matrix3d& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
+  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
+         solver.eigenvectors().transpose();
+}
+
+}  // namespace
+
+std::vector<GaussianPair> gaussian_pairs(const MapPair& pair, double voxel_m, std::uint64_t min_points) {
+  const PointBlocks& reference = pair.reference.index.points;
+  const PointBlocks& estimate = pair.estimate.index.points;
+  const VoxelFrame frame(united(bounds(reference), bounds(estimate)), voxel_m);
+  Moments in_reference, in_estimate;
+  parallel_tasks({[&] { in_reference = voxel_moments(reference, frame); },
+                  [&] { in_estimate = voxel_moments(estimate, frame); }});
+
+  const std::uint64_t enough = std::max<std::uint64_t>(min_points, 2);
+  std::vector<GaussianPair> pairs;
+  for (const auto& [key, sums] : in_reference.entries()) {
+    const MomentSums* other = in_estimate.find(key);
+    if (sums.n < enough || other == nullptr || other->n < enough) continue;
+    pairs.push_back({frame.index(key), sums.gaussian(), other->gaussian()});
+  }
+  std::ranges::sort(pairs, {}, &GaussianPair::index);
+  return pairs;
+}
+
+double wasserstein_distance(const Gaussian& a, const Gaussian& b) {
+  const Eigen::Matrix3d cov_a = a.covariance();
+  const Eigen::Matrix3d cov_b = b.covariance();
+  // tr (S1^1/2 S2 S1^1/2)^1/2 is the sum of the singular values of S1^1/2 S2^1/2, which keeps flat voxels' digits.
+  const double root_trace = (root(cov_a) * root(cov_b)).eval().jacobiSvd().singularValues().sum();
+  const double traces = cov_a.trace() + cov_b.trace();
+  const double sq = (a.mean - b.mean).squaredNorm() + traces - 2.0 * root_trace;
+  return sq < 1e-12 * traces || sq <= 0.0 ? 0.0 : std::sqrt(sq);
+}
+
+std::vector<VoxelDistance> wasserstein_distances(std::span<const GaussianPair> pairs) {
+  constexpr std::size_t kPairChunk = 256;
+  std::vector<VoxelDistance> distances(pairs.size());
+  parallel_chunks(pairs.size(), kPairChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      distances[i] = {pairs[i].index, wasserstein_distance(pairs[i].reference, pairs[i].estimate)};
+    }
+  });
+  return distances;
+}
+
+AverageWasserstein average_wasserstein(std::span<const VoxelDistance> voxels) {
+  std::vector<double> distances;
+  for (const VoxelDistance& voxel : voxels) distances.push_back(voxel.distance_m);
+  std::vector<double> shares(21);
+  for (std::size_t i = 0; i < shares.size(); ++i) shares[i] = static_cast<double>(i) / 20.0;
+
+  AverageWasserstein average;
+  average.n_voxels = distances.size();
+  average.mean_m = std::accumulate(distances.begin(), distances.end(), 0.0) / static_cast<double>(distances.size());
+  average.quantiles_m = quantiles(distances, shares);
+  average.median_m = average.quantiles_m[10];
+  return average;
+}
+
+}  // namespace cmap

@@ -1,0 +1,84 @@
+#include "io/file_format.hpp"
+
+#include <sys/stat.h>
+
+#include <thread>
+
+#include "io/io_testing.hpp"
+
+namespace cmap::testing {
+namespace {
+
+using namespace std::string_literals;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+FileFormat format_of(std::string name, std::string_view content) {
+  ByteSource source(std::move(name), std::as_bytes(std::span(content)));
+  return detect_format(source);
+}
+
+TEST(FileFormat, ContentComesBeforeTheExtension) {
+  EXPECT_EQ(format_of("a.pcd", "ply\nformat"), FileFormat::kPly);
+  EXPECT_EQ(format_of("a.txt", "ply\r\nformat"), FileFormat::kPly);
+  EXPECT_EQ(format_of("a.ply", "# .PCD v0.7\n"), FileFormat::kPcd);
+  EXPECT_EQ(format_of("a.ply", "# x\n\n#y\nVERSION 0.7\n"), FileFormat::kPcd);
+  EXPECT_EQ(format_of("a.ply", "LASF"), FileFormat::kLas);
+  EXPECT_EQ(format_of("a", "1 2 3\n"), FileFormat::kText);
+}
+
+TEST(FileFormat, ExtensionDecidesWhereContentDoesNot) {
+  EXPECT_EQ(format_of("a.PLY", "plyx"), FileFormat::kPly);
+  EXPECT_EQ(format_of("a.pcd", "# mine\nSIZE 4\n"), FileFormat::kPcd);
+  EXPECT_THAT(refusal("a.las", "hello"), HasSubstr("LASF"));
+  EXPECT_THAT(refusal("a.obj", "v 1 2 3\n"), HasSubstr("is a mesh (.obj)"));
+}
+
+TEST(FileFormat, NamesWhatCannotBeRead) {
+  const std::pair<std::string, std::string> kCases[] = {
+      {"\x93NUMPY\x01", "NumPy array"},
+      {"PK\x03\x04....", "ZIP archive (.zip, .npz)"},
+      {"ASTM-E57....", "E57"},
+      {"\x1f\x8b\x08", "gzip"},
+      {"version https://git-lfs.github.com/spec/v1\n", "Git LFS pointer"},
+      {"<!DOCTYPE html>", "web page"},
+      {"\x01\x02\x00\xff"s, "of no known format"},
+  };
+  for (const auto& [content, message] : kCases) {
+    EXPECT_THAT(refusal("a.xyz", content), AllOf(HasSubstr(message), HasSubstr("PLY, PCD, LAS and text")));
+  }
+}
+
+TEST(FileFormat, ProseIsNoPointCloud) {
+  EXPECT_THAT(refusal("README", "This is\nno point cloud\n"), HasSubstr("line 2: 'no' is not a number"));
+}
+
+TEST(ReadPointCloud, TellsThePathAsGiven) {
+  const TempFolder folder;
+  const auto path = folder.write("a.xyz", "1 2 3\n");
+  EXPECT_EQ(read_point_cloud(path).info.path, path.string());
+  EXPECT_EQ(read_point_cloud(path).info.sha256, "");
+  // sha256sum of "1 2 3\n"
+  EXPECT_EQ(read_point_cloud(path, {.sha256 = true}).info.sha256,
+            "1def07dbe06eeb097aafec8a40329937cd20c93a83634b8221ea2b41a894310c");
+}
+
+TEST(ReadPointCloud, SaysWhatIsWrongWithThePath) {
+  EXPECT_THROW(read_point_cloud("/no/such.ply"), InputError);
+  EXPECT_THROW(read_point_cloud("/tmp"), InputError);
+  EXPECT_THROW(read_point_cloud(""), InputError);
+}
+
+TEST(ReadPointCloud, ReadsFromAPipe) {
+  const TempFolder folder;
+  const auto pipe = folder / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::thread writer([&] { std::ofstream(pipe) << "1 2 3\n4 5 6\n"; });
+  const auto file = read_point_cloud(pipe, {.sha256 = true});
+  writer.join();
+  EXPECT_EQ(file.info.points, 2U);
+  EXPECT_EQ(file.info.sha256.size(), 64U);
+}
+
+}  // namespace
+}  // namespace cmap::testing

@@ -1,0 +1,109 @@
+#include "io/io_testing.hpp"
+
+namespace cmap::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(TextReader, EverySeparator) {
+  for (const char* text : {"1 2 3\n4 5 6\n", "1,2,3\n4,5,6\n", "1;2;3\n4;5;6\n", "1\t2\t3\n4\t5\t6",
+                           "1, 2 ,3\r\n4 , 5,6\r\n", " 1  2 3,\n\n4 5 6 ,\n",
+                           "\xef\xbb\xbf"
+                           "1 2 3\n4 5 6\n"}) {
+    const auto file = read_content("a.xyz", text);
+    EXPECT_EQ(file.info.format, "text");
+    ASSERT_EQ(file.info.points, 2U) << text;
+    EXPECT_EQ(point(file, 0), Eigen::Vector3d(1, 2, 3)) << text;
+    EXPECT_EQ(point(file, 1), Eigen::Vector3d(4, 5, 6)) << text;
+    EXPECT_FALSE(file.cloud.has_color());
+  }
+}
+
+TEST(TextReader, ColorsAboveOneAreEightBit) {
+  const auto file = read_content("a.txt", "# x y z\n1 2 3 0 1 1\n4 5 6 255 128 0\n");
+  EXPECT_EQ(file.cloud.colors, Colors(Array<Rgb8>{{0, 1, 1}, {255, 128, 0}}));
+  EXPECT_THAT(all_notes(file), HasSubstr("0 to 255"));
+}
+
+TEST(TextReader, ColorsUpToOneAreUnitColors) {
+  const auto file = read_content("a.txt", "1 2 3 0 0.5 1\n4 5 6 1 1 1\n");
+  EXPECT_EQ(file.cloud.colors, Colors(Array<RgbF>{{0.0F, 0.5F, 1.0F}, {1.0F, 1.0F, 1.0F}}));
+  EXPECT_THAT(all_notes(file), HasSubstr("[0,1]"));
+}
+
+TEST(TextReader, HeaderLineNamesColumns) {
+  for (const char* text :
+       {"R,G,B,label,z,y,x\n10,20,30,9,3,2,1\n", "\"red\";\"green\";\"blue\";n;\"Z\";\"Y\";\"X\"\n10;20;30;9;3;2;1\n",
+        "//R G B I Z Y X\n10 20 30 9 3 2 1\n", "# comment\n# r g b i z y x\n10 20 30 9 3 2 1\n"}) {
+    const auto file = read_content("a.csv", text);
+    EXPECT_EQ(point(file, 0), Eigen::Vector3d(1, 2, 3)) << text;
+    EXPECT_EQ(file.cloud.colors, Colors(Array<Rgb8>{{10, 20, 30}})) << text;
+  }
+}
+
+TEST(TextReader, HeaderWithNormalsTakesNoColor) {
+  const auto file = read_content("a.csv", "x,y,z,nx,ny,nz\n1,2,3,0,0,-1\n");
+  EXPECT_FALSE(file.cloud.has_color());
+}
+
+TEST(TextReader, UnnamedColumnsAreNoted) {
+  EXPECT_THAT(all_notes(read_content("a.xyz", "1 2 3 0.5\n")), HasSubstr("column 4 ignored"));
+  EXPECT_THAT(all_notes(read_content("a.xyz", "1 2 3 0 9 8 7\n")), HasSubstr("columns 4 to 7 ignored"));
+  EXPECT_THAT(all_notes(read_content("a.xyz", "east north up\n1 2 3\n")), HasSubstr("does not name x, y and z"));
+}
+
+TEST(TextReader, CoordinatesAreDouble) {
+  const auto file = read_content("a.xyz", "500000.1234 4000000.4321 0.5\n500001.1234 4000001.4321 1.5\n");
+  EXPECT_LT((point(file, 0) - Eigen::Vector3d(500000.1234, 4000000.4321, 0.5)).norm(), 1e-6);
+}
+
+TEST(TextReader, NonFinitePointsAreDroppedAndCounted) {
+  const auto file = read_content("a.xyz", "nan 2 3 1 2 3\n1 2 3 1 nan 3\n1 2 3 4 5 6\n");
+  EXPECT_EQ(file.info.points, 3U);
+  ASSERT_EQ(file.info.finite_points, 1U);
+  EXPECT_EQ(file.cloud.colors, Colors(Array<Rgb8>{{4, 5, 6}}));
+}
+
+TEST(TextReader, DoesNotDependOnTheLocale) {
+  if (std::setlocale(LC_ALL, "de_DE.UTF-8") == nullptr) std::setlocale(LC_ALL, "C");
+  EXPECT_EQ(point(read_content("a.xyz", "1.5 2.5 3.5\n"), 0), Eigen::Vector3d(1.5, 2.5, 3.5));
+  std::setlocale(LC_ALL, "C");
+}
+
+TEST(TextReader, ManyLines) {
+  std::string text;
+  constexpr std::size_t kLines = 200000;
+  for (std::size_t i = 0; i < kLines; ++i)
+    text += std::to_string(i) + " 0.5 0.25 " + std::to_string(i % 256) + " 2 3\n";
+  const auto file = read_content("many.txt", text);
+  ASSERT_EQ(file.cloud.size(), kLines);
+  const auto& colors = std::get<Array<Rgb8>>(file.cloud.colors);
+  for (std::size_t i = 0; i < kLines; ++i) {
+    ASSERT_EQ(point(file, i).x(), static_cast<double>(i));
+    ASSERT_EQ(colors[i][0], i % 256);
+  }
+}
+
+TEST(TextReader, BadLines) {
+  const std::pair<std::string, std::string> kCases[] = {
+      {"1 2\n", "line 1: 2 columns; at least x y z expected"},
+      {"1 2 3\n4 5\n", "line 2: 2 columns where 3 were expected"},
+      {"1 2 3\n\n# c\n4 5 six\n", "line 4: column 3: 'six' is not a number"},
+      {"x y z\nfoo bar baz\n", "line 2: 'foo' is not a number"},
+      {"x y z r\n1 2 3\n", "line 2: 3 columns, but the header line names 4"},
+      {"1,,3\n4,5,6\n", "line 1: column 2: '' is not a number"},
+      {"1,5;2,5;3,5\n", "line 1: mixes ';' and ','"},
+      {"1 2 3 4 5 256\n", "line 1: color 256"},
+      {"1 2 3 0 0 -1\n", "line 1: color -1"},
+      {"1 2 3 0.5 0 0\n1 2 3 200 0 0\n", "line 2 has a color above 1 and line 1 a fraction"},
+      {"# only a comment\n", "holds no line of numbers"},
+      {"x y z\n", "holds no line of numbers"},
+      {"\n\n", "holds no line of numbers"},
+      {"nan nan nan\n", "none of its 1 points is finite"},
+      {"0 0 1e15\n", "point 1: z = 1e+15 is beyond"},
+  };
+  for (const auto& [content, message] : kCases) EXPECT_THAT(refusal("bad.xyz", content), HasSubstr(message)) << content;
+}
+
+}  // namespace
+}  // namespace cmap::testing

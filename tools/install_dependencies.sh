@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# Installs the Debian and Ubuntu packages that cmap is built from and tested with, as far as they are missing.
+# Usage: tools/install_dependencies.sh [--benchmarks]
+#   --benchmarks   also what the speed benchmarks need: Google Benchmark and the libraries compared with
+set -euo pipefail
+tools=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+
+packages=(
+  g++ cmake ninja-build
+  libeigen3-dev libfmt-dev libtbb-dev libssl-dev nlohmann-json3-dev libcli11-dev
+  liblzf-dev liblz4-dev libflann-dev
+  libgtest-dev python3 python3-numpy python3-scipy python3-jsonschema
+)
+for argument in "$@"; do
+  case "$argument" in
+    --benchmarks) packages+=(libbenchmark-dev libnanoflann-dev libpcl-dev) ;;
+    -h | --help) sed -n '2,/^set /{/^#/s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"; exit 0 ;;
+    *) echo "install_dependencies.sh: unknown argument '$argument'; see --help" >&2; exit 2 ;;
+  esac
+done
+
+if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
+  echo "install_dependencies.sh: no apt-get here; install the equivalents of: ${packages[*]}" >&2
+  exit 1
+fi
+
+is_installed() { [[ $(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null) == installed ]]; }
+
+missing=()
+for package in "${packages[@]}"; do
+  is_installed "$package" || missing+=("$package")
+done
+if ((${#missing[@]} == 0)); then exit 0; fi
+
+as_root=(env)
+if ((EUID != 0)); then
+  if ! command -v sudo >/dev/null; then
+    echo "install_dependencies.sh: neither root nor sudo; as root, run: apt-get install ${missing[*]}" >&2
+    exit 1
+  fi
+  as_root=(sudo env)
+fi
+
+apt_get() {
+  "$tools/quietly.sh" "${as_root[@]}" DEBIAN_FRONTEND=noninteractive \
+    apt-get --yes -o Acquire::Retries=3 -o DPkg::Lock::Timeout=300 "$@"
+}
+
+echo "Installing ${missing[*]}"
+apt_get update
+apt_get install --no-install-recommends "${missing[@]}"

@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds cmap (preset "release") and runs every test.
+# Usage: tools/test.sh [CTEST-ARGUMENT...]     for example: tools/test.sh -R core/
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+tools/install_dependencies.sh
+echo "Configuring build/release"
+tools/quietly.sh cmake --preset release
+echo "Building build/release"
+tools/quietly.sh cmake --build --preset release --parallel "$(nproc)"
+exec ctest --preset release --no-tests=error --output-on-failure --parallel "$(nproc)" "$@"
