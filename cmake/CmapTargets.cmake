@@ -13,7 +13,8 @@ endfunction()
 # cmap_add_module(name SOURCES a.cpp ... [PUBLIC lib ...] [PRIVATE lib ...]) makes cmap::<name>.
 function(cmap_add_module name)
   cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
-  set(target cmap_${name})
+  # Programs are called cmap_<name>; some share their name with a module.
+  set(target cmap_lib_${name})
   add_library(${target} ${ARG_SOURCES})
   add_library(cmap::${name} ALIAS ${target})
   cmap_set_compile_options(${target})
@@ -21,7 +22,8 @@ function(cmap_add_module name)
     PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
     PRIVATE ${PROJECT_SOURCE_DIR}/lib)
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
-  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} OUTPUT_NAME cmap_${name}
+    POSITION_INDEPENDENT_CODE ON)
   install(TARGETS ${target} EXPORT cmapTargets)
 endfunction()
 

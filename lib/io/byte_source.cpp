@@ -32,7 +32,7 @@ ByteSource::ByteSource(const std::filesystem::path& path, bool sha256) : name_(p
     }
     if (size_ == 0) fail("the file is empty");
     if (sha256) hash_.emplace();
-    buffer_.resize(kBlockBytes);
+    buffer_ = std::make_unique_for_overwrite<std::byte[]>(block_bytes_);
   } catch (...) {
     ::close(file_);
     throw;
@@ -43,7 +43,8 @@ ByteSource::ByteSource(std::string name, std::span<const std::byte> memory, bool
     : name_(std::move(name)), memory_(memory), size_(memory.size()) {
   if (size_ == 0) fail("the file is empty");
   if (sha256) hash_.emplace();
-  buffer_.resize(std::max(block_bytes, kMaxRecordBytes));
+  block_bytes_ = std::max(block_bytes, kMaxRecordBytes);
+  buffer_ = std::make_unique_for_overwrite<std::byte[]>(block_bytes_);
 }
 
 ByteSource::~ByteSource() {
@@ -85,16 +86,16 @@ std::string ByteSource::finish_sha256() {
 
 void ByteSource::refill(std::size_t n) {
   std::size_t filled = window_.size();
-  if (filled > 0) std::memmove(buffer_.data(), window_.data(), filled);
+  if (filled > 0) std::memmove(buffer_.get(), window_.data(), filled);
   while (filled < n && position_ + filled < size_) {
     const std::uint64_t left = size_ - position_ - filled;
-    const auto room = std::span(buffer_).subspan(filled, std::min<std::uint64_t>(left, buffer_.size() - filled));
+    const std::span<std::byte> room{buffer_.get() + filled, std::min<std::uint64_t>(left, block_bytes_ - filled)};
     const std::size_t got = read_some(room, position_ + filled);
     if (got == 0) size_ = position_ + filled;  // the file became shorter while it was read
     if (hash_) hash_->add(room.first(got));
     filled += got;
   }
-  window_ = std::span(buffer_).first(filled);
+  window_ = {buffer_.get(), filled};
 }
 
 std::size_t ByteSource::read_some(std::span<std::byte> out, std::uint64_t offset) {

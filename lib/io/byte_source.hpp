@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -37,7 +38,7 @@ class ByteSource {
   std::uint64_t size() const { return size_; }
   std::uint64_t position() const { return position_; }
   std::uint64_t remaining() const { return size_ - position_; }
-  std::size_t block_bytes() const { return buffer_.size(); }
+  std::size_t block_bytes() const { return block_bytes_; }
 
   /// At least n of the next bytes, fewer only at the end; n <= block_bytes(). Valid until the next peek.
   std::span<const std::byte> peek(std::size_t n) {
@@ -76,7 +77,8 @@ class ByteSource {
   Array<std::byte> spool_;
   std::uint64_t size_ = 0;
   std::uint64_t position_ = 0;
-  Array<std::byte> buffer_;
+  std::size_t block_bytes_ = kBlockBytes;
+  std::unique_ptr<std::byte[]> buffer_;
   std::span<const std::byte> window_;
   std::optional<Sha256> hash_;
 };

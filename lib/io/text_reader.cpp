@@ -60,7 +60,11 @@ bool is_empty(std::string_view line) {
   return std::all_of(line.begin(), line.end(), [](char c) { return is_blank(c); });
 }
 
-std::string_view without_mark(std::string_view line) {
+std::string_view without_comment_mark(std::string_view line) {
+  return line.substr(std::min(line.size(), line.find_first_not_of("#/")));
+}
+
+std::string_view without_byte_order_mark(std::string_view line) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
   return line;
@@ -71,12 +75,10 @@ Start find_start(LineReader& lines) {
   bool has_header = false;
   std::vector<std::string> comment;
   while (lines.next(start.line)) {
-    if (lines.number() == 1) start.line = without_mark(start.line);
+    if (lines.number() == 1) start.line = without_byte_order_mark(start.line);
     if (is_empty(start.line)) continue;
     if (is_comment(start.line)) {
-      std::vector<std::string> names = split_columns(start.line.substr(
-          start.line.find_first_not_of("#/") == std::string_view::npos ? start.line.size()
-                                                                       : start.line.find_first_not_of("#/")));
+      std::vector<std::string> names = split_columns(without_comment_mark(start.line));
       if (names_axes(names)) comment = std::move(names);
       continue;
     }
@@ -86,7 +88,10 @@ Start find_start(LineReader& lines) {
       if (!has_header && comment.size() == columns.size()) start.names = std::move(comment);
       return start;
     }
-    if (has_header) lines.fail("'{}' is not a number", columns.front().substr(0, 40));
+    if (has_header) {
+      lines.fail("'{}' is not a number (taken for text, x y z [r g b], as no other format was recognized)",
+                 columns.front().substr(0, 40));
+    }
     start.names = std::move(columns);
     has_header = true;
   }

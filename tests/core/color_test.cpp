@@ -58,6 +58,20 @@ TEST(DeltaE2000, IsSymmetric) {
   }
 }
 
+TEST(DeltaE2000, OppositeHuesCountAsNotAbove180Degrees) {
+  // The formula jumps at 180 degrees; rounding must not choose the side, as pairs 10 and 14 of the table have it. So
+  // nothing happens where lab2 turns clockwise, to less than 180 degrees counterclockwise of lab1, by 1e-9: that moves
+  // delta E by less than 28 * 2 * 1e-9, the other side of the jump by 0.04 and more.
+  for (int a = -40; a <= 40; ++a) {
+    for (int b = 1; b <= 40; ++b) {
+      const Vector3d lab1(50.0, 0.3 * a, 0.7 * b), lab2(60.0, -lab1.y(), -lab1.z());
+      const Vector3d turned(60.0, lab2.y() + 1e-9 * lab2.z(), lab2.z() - 1e-9 * lab2.y());
+      ASSERT_NEAR(delta_e_2000(lab1, lab2), delta_e_2000(lab1, turned), 1e-7) << lab1.transpose();
+      ASSERT_NEAR(delta_e_2000(lab2, lab1), delta_e_2000(turned, lab1), 1e-7) << lab1.transpose();
+    }
+  }
+}
+
 TEST(DeltaE2000, OfAColorToItselfIsZero) {
   for (const LabPair& p : sharma_pairs()) {
     EXPECT_EQ(delta_e_2000(p.lab1, p.lab1), 0.0);

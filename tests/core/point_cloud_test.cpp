@@ -263,7 +263,7 @@ TEST(Transformed, KeepsEveryColorType) {
 
 TEST(Transformed, OfNothingIsEmptyButStillColored) {
   PointCloud empty;
-  empty.colors = Array<RgbF>{};
+  empty.colors.emplace<Array<RgbF>>();
   const PointCloud moved = transformed(empty, similarity(2.0, kRotation, kUtm));
   EXPECT_EQ(moved.size(), 0u);
   EXPECT_EQ(color_type_name(moved.colors), "f32");

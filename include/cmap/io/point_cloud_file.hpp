@@ -17,12 +17,12 @@ struct ReadOptions {
 
 /// What a reader found out about a file.
 struct FileInfo {
-  std::string path;                ///< as given
-  std::string format;              ///< for people: "PLY binary little endian", "PCD compressed", "LAS 1.2 format 3", "text"
-  std::uint64_t points = 0;        ///< as stored
-  std::uint64_t finite_points = 0; ///< kept
-  std::string sha256;              ///< lowercase hex; empty unless asked for
-  std::vector<std::string> notes;  ///< what was decided on the user's behalf: "8-bit colors in 16-bit fields", ...
+  std::string path;          ///< as given
+  std::string format;        ///< for people: "PLY binary little endian", "PCD compressed", "LAS 1.2 format 3", "text"
+  std::uint64_t points = 0;  ///< as stored
+  std::uint64_t finite_points = 0;  ///< kept
+  std::string sha256;               ///< lowercase hex; empty unless asked for
+  std::vector<std::string> notes;   ///< what was decided on the user's behalf: "8-bit colors in 16-bit fields", ...
 };
 
 struct PointCloudFile {
@@ -52,7 +52,6 @@ void write_ply(const std::filesystem::path& path, const PointCloud& cloud, std::
                PlyEncoding encoding = PlyEncoding::kBinaryLittleEndian);
 
 /// The same as PCD v0.7; colors become packed 8-bit `rgb` (float32 bits), as PCL writes them.
-void write_pcd(const std::filesystem::path& path, const PointCloud& cloud,
-               PcdEncoding encoding = PcdEncoding::kBinary);
+void write_pcd(const std::filesystem::path& path, const PointCloud& cloud, PcdEncoding encoding = PcdEncoding::kBinary);
 
 }  // namespace cmap

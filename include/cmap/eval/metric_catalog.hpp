@@ -1,0 +1,41 @@
+#pragma once
+
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cmap/eval/options.hpp"
+
+namespace cmap {
+
+/// What is fixed about a metric: METRICS.md in one table.
+struct MetricInfo {
+  std::string_view id;
+  std::string_view symbol;  ///< the paper's, or empty
+  std::string_view title;   ///< for people
+  std::string_view group;   ///< color, color+, geometry, distribution, mme
+  std::string_view unit;
+  std::string_view better;  ///< "lower", "higher"
+  bool needs_color;
+  bool per_threshold;  ///< has one value for each of `thresholds`
+};
+
+/// All metrics in the order of reports.
+const std::vector<MetricInfo>& metric_catalog();
+
+/// By id or symbol, whatever the case; nullptr if there is none.
+const MetricInfo* find_metric(std::string_view id_or_symbol);
+
+/// Which metrics the options ask for.
+struct MetricSelection {
+  std::set<std::string_view> ids;
+  bool color_is_required = false;  ///< a color group or metric was named
+  bool contains(std::string_view id) const { return ids.contains(id); }
+};
+
+/// Groups: color, color+ (color and what goes beyond the paper), geometry, distribution, mme, all.
+/// Throws UsageError for an unknown name.
+MetricSelection select_metrics(const EvaluationOptions& options);
+
+}  // namespace cmap

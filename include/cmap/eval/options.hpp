@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cmap/core/point_cloud.hpp"
+#include "cmap/spatial/nearest.hpp"
+
+namespace cmap {
+
+/// Everything that can change a number of an evaluation. The defaults are those of METRICS: the paper's where it gives
+/// any. Command line, configuration files and reports name the fields as evaluation_option_specs() does.
+struct EvaluationOptions {
+  std::vector<std::string> metrics;  ///< groups or metric ids; empty: color, geometry, distribution, as far as possible
+  std::vector<double> thresholds_m{0.2, 0.1, 0.08, 0.05, 0.01};
+  double overlap_distance_m = 1.0;
+  double lcr_tau = 0.1;
+  double lcr_radius_m = 0.5;
+  bool lcr_curve = false;
+  double ccs_voxel_m = 0.2;
+  std::uint64_t ccs_min_points = 2;
+  double awd_voxel_m = 3.0;
+  std::uint64_t awd_min_points = 100;
+  std::uint64_t scs_radius_voxels = 5;
+  double mme_radius_m = 0.1;
+  std::uint64_t mme_min_neighbors = 10;
+  std::optional<double> color_max_distance_m;
+  std::optional<double> voxel_m;  ///< thin both maps first
+  std::optional<Box3d> crop;      ///< reference frame
+  std::vector<std::string> as;    ///< mapeval, open3d, mpeg, cloudcompare
+  IndexKind index = IndexKind::kBvh;
+};
+
+enum class OptionKind { kNumber, kCount, kFlag, kNumbers, kWords, kWord };
+
+/// One field of EvaluationOptions as users see it.
+struct OptionSpec {
+  const char* name;         ///< on the command line without the dashes, in files and reports
+  OptionKind kind;
+  const char* placeholder;  ///< "METERS", "LIST", ...
+  const char* help;
+  /// Sets the field from a value of the kind's JSON type. Throws UsageError naming the option, the value and the rule.
+  void (*set)(EvaluationOptions&, const nlohmann::ordered_json&);
+  nlohmann::ordered_json (*get)(const EvaluationOptions&);
+};
+
+const std::vector<OptionSpec>& evaluation_option_specs();
+
+/// Sets an option from the text of a command line ("0.2,0.1", "true"). Throws UsageError.
+void set_option(EvaluationOptions& options, const OptionSpec& spec, const std::string& text);
+
+/// Applies a JSON object (comments allowed) of option names and values. Throws UsageError naming `source` and the key:
+/// unknown key, wrong type, value out of range.
+void apply_config(EvaluationOptions& options, const std::string& json_text, const std::string& source);
+void apply_config_file(EvaluationOptions& options, const std::filesystem::path& path);
+
+/// The shipped configurations of configs/: "paper", "indoor", "outdoor", "aerial", "mapeval".
+std::vector<std::string> preset_names();
+void apply_preset(EvaluationOptions& options, const std::string& name);
+
+/// All options after defaults, by name, as the report's `parameters`.
+nlohmann::ordered_json to_json(const EvaluationOptions& options);
+
+}  // namespace cmap

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cmap/eval/evaluation.hpp"
+#include "cmap/io/point_cloud_file.hpp"
+
+namespace cmap {
+
+/// A map as it was read: what the report says about an input.
+struct InputDescription {
+  FileInfo file;
+  std::string color;  ///< none, u8, u16, f32
+  Eigen::Vector3d origin_m;
+  Box3d bounds_m;
+};
+InputDescription describe(const PointCloudFile& file);
+
+/// How the evaluation was run: the only part of a report that differs between two equal runs.
+struct RunDescription {
+  std::string command;
+  std::string started_utc;
+  double wall_s = 0.0;
+  std::vector<std::pair<std::string, double>> stage_seconds;
+  int threads = 0;
+  std::string simd;
+};
+
+/// The report, schema cmap.report/1 (DESIGN; configs/report.schema.json). Numbers round-trip; missing ones are null.
+nlohmann::ordered_json make_report(const InputDescription& reference, const InputDescription& estimate,
+                                   const Evaluation& evaluation, const RunDescription& run);
+
+/// A report as a table for people: groups, symbols, values with their units and directions, warnings below.
+std::string format_table(const nlohmann::ordered_json& report);
+
+}  // namespace cmap

@@ -1,0 +1,176 @@
+#include <fmt/format.h>
+
+#include "cmap/core/parallel.hpp"
+#include "cmap/metrics/color_consistency.hpp"
+#include "cmap/metrics/color_distance.hpp"
+#include "eval/json_number.hpp"
+#include "eval/metric_records.hpp"
+#include "eval/record_list.hpp"
+
+namespace cmap {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+ColorDistanceOptions pairs_that_count(const EvaluationOptions& options) {
+  ColorDistanceOptions pairs;
+  pairs.max_distance_m = options.color_max_distance_m.value_or(INFINITY);
+  return pairs;
+}
+
+Json max_distance_parameter(const EvaluationOptions& options) {
+  return {{"max_distance_m", json_number(options.color_max_distance_m.value_or(INFINITY))}};
+}
+
+Json color_distance_fields(const EvaluationOptions& options, const ColorDistance& cd) {
+  Json fields{{"value", json_number(cd.value())},
+              {"value_8bit", json_number(255.0 * cd.value())},
+              {"parameters", max_distance_parameter(options)},
+              {"estimate_to_reference", json_number(cd.estimate_to_reference.mean)},
+              {"reference_to_estimate", json_number(cd.reference_to_estimate.mean)},
+              {"n_estimate", cd.estimate_to_reference.n},
+              {"n_reference", cd.reference_to_estimate.n}};
+  if (options.color_max_distance_m) {
+    fields["n_unmatched_estimate"] = cd.estimate_to_reference.n_unmatched;
+    fields["n_unmatched_reference"] = cd.reference_to_estimate.n_unmatched;
+  }
+  return fields;
+}
+
+Json fidelity_fields(const EvaluationOptions& options, const ColorDistance& cd, std::vector<Warning>& warnings) {
+  const double cf = color_fidelity_db(cd.value());
+  if (std::isinf(cf)) {
+    warnings.push_back({"color_fidelity_infinite", "every color is exact, so color fidelity is infinite and shown as null"});
+  }
+  return {{"value", json_number(cf)}, {"parameters", max_distance_parameter(options)}};
+}
+
+Json recall_fields(const EvaluationOptions& options, const LocalColorRecall& recall) {
+  Json fields{{"value", recall.value()},
+              {"coverage", recall.coverage()},
+              {"conditional", json_number(recall.conditional())},
+              {"parameters", {{"tau", options.lcr_tau}, {"radius_m", options.lcr_radius_m}}},
+              {"n_reference", recall.n_reference},
+              {"n_covered", recall.n_covered},
+              {"n_recalled", recall.n_recalled}};
+  if (options.lcr_curve) {
+    fields["curve"] = {{"tau", recall.curve.tau}, {"value", recall.curve.value}, {"area", recall.curve.area}};
+  }
+  return fields;
+}
+
+Json consistency_numbers(const ColorConsistency& c) {
+  return {{"value", json_number(c.mean)},
+          {"value_x100", json_number(100.0 * c.mean)},
+          {"median", json_number(c.median)},
+          {"n_voxels", c.n_voxels},
+          {"n_voxels_below_min", c.n_voxels_below_min}};
+}
+
+Json consistency_fields(const Findings& f, std::vector<Warning>& warnings) {
+  const EvaluationOptions& o = f.options;
+  ColorConsistency estimate, reference;
+  parallel_tasks({[&] { estimate = color_consistency(f.pair.estimate, o.ccs_voxel_m, o.ccs_min_points); },
+                  [&] { reference = color_consistency(f.pair.reference, o.ccs_voxel_m, o.ccs_min_points); }});
+  if (estimate.n_voxels == 0) {
+    warnings.push_back({"color_consistency_no_voxels",
+                        fmt::format("no {} m voxel of the estimate holds {} points: no color consistency", o.ccs_voxel_m,
+                                    o.ccs_min_points)});
+  }
+  Json fields = consistency_numbers(estimate);
+  fields["parameters"] = {{"voxel_m", o.ccs_voxel_m}, {"min_points", o.ccs_min_points}};
+  fields["reference"] = consistency_numbers(reference);
+  return fields;
+}
+
+Json delta_e_fields(const Findings& f) {
+  const auto directed = [&](const NearestPairs& pairs) { return delta_e(pairs, f.options.lcr_radius_m); };
+  const auto json = [](const DeltaEStats& d) -> Json {
+    return {{"mean", json_number(d.mean)}, {"median", json_number(d.median)}, {"p95", json_number(d.p95)}, {"n", d.n}};
+  };
+  const DeltaEStats e = directed(f.pair.estimate_to_reference());
+  const DeltaEStats r = directed(f.pair.reference_to_estimate());
+  return {{"value", json_number(0.5 * (e.mean + r.mean))},
+          {"parameters", {{"radius_m", f.options.lcr_radius_m}}},
+          {"estimate_to_reference", json(e)},
+          {"reference_to_estimate", json(r)}};
+}
+
+Json by_range_fields(const Findings& f) {
+  constexpr std::array kEdges_m{0.0, 0.05, 0.1, 0.2, 0.5, 1.0};
+  Json bins = Json::array();
+  for (std::size_t b = 0; b + 1 < kEdges_m.size(); ++b) {
+    ColorDistanceOptions range;
+    if (b > 0) range.min_distance_m = kEdges_m[b];
+    range.max_distance_m = kEdges_m[b + 1];
+    const ColorDistance cd = color_distance(f.pair, range);
+    bins.push_back({{"lo_m", kEdges_m[b]},
+                    {"hi_m", kEdges_m[b + 1]},
+                    {"value", json_number(cd.value())},
+                    {"estimate_to_reference", json_number(cd.estimate_to_reference.mean)},
+                    {"reference_to_estimate", json_number(cd.reference_to_estimate.mean)},
+                    {"n_estimate", cd.estimate_to_reference.n},
+                    {"n_reference", cd.reference_to_estimate.n}});
+  }
+  return {{"per_range", bins}};
+}
+
+Json exposure_free_fields(const Findings& f) {
+  const ExposureGains gains = exposure_gains(f.pair, f.options.lcr_radius_m);
+  ColorDistanceOptions pairs = pairs_that_count(f.options);
+  pairs.estimate_gain = gains.gain;
+  const ColorDistance cd = color_distance(f.pair, pairs);
+  Json parameters = max_distance_parameter(f.options);
+  parameters["radius_m"] = f.options.lcr_radius_m;
+  return {{"value", json_number(cd.value())},
+          {"parameters", parameters},
+          {"gains", json_vector(gains.gain)},
+          {"n_pairs", gains.n_pairs},
+          {"estimate_to_reference", json_number(cd.estimate_to_reference.mean)},
+          {"reference_to_estimate", json_number(cd.reference_to_estimate.mean)}};
+}
+
+Json psnr_fields(const Findings& f) {
+  const ColorPsnr psnr = color_psnr(f.pair);
+  const Eigen::Vector3d db = psnr.psnr_db();
+  return {{"value", json_number(db.x())},
+          {"y", json_number(db.x())},
+          {"cb", json_number(db.y())},
+          {"cr", json_number(db.z())},
+          {"mse",
+           {{"estimate_to_reference", json_vector(psnr.mse_estimate_to_reference)},
+            {"reference_to_estimate", json_vector(psnr.mse_reference_to_estimate)}}}};
+}
+
+}  // namespace
+
+std::vector<MetricRecord> color_records(const Findings& f, std::optional<LocalColorRecall>& recall,
+                                        std::vector<Warning>& warnings) {
+  std::optional<ColorDistance> cd;
+  if (f.selection.contains("color_distance") || f.selection.contains("color_fidelity")) {
+    cd = color_distance(f.pair, pairs_that_count(f.options));
+  }
+  RecordList records(f.selection);
+  records.add("color_distance", [&] { return color_distance_fields(f.options, *cd); });
+  records.add("color_fidelity", [&] { return fidelity_fields(f.options, *cd, warnings); });
+  records.add("local_color_recall", [&] {
+    recall = local_color_recall(f.pair, {f.options.lcr_tau, f.options.lcr_radius_m, f.options.lcr_curve});
+    return recall_fields(f.options, *recall);
+  });
+  records.add("color_consistency", [&] { return consistency_fields(f, warnings); });
+  records.add("delta_e", [&] { return delta_e_fields(f); });
+  records.add("color_distance_by_range", [&] { return by_range_fields(f); });
+  records.add("color_distance_exposure_free", [&] { return exposure_free_fields(f); });
+  records.add("color_psnr", [&] { return psnr_fields(f); });
+  return records.take();
+}
+
+std::vector<MetricRecord> missing_color_records(const MetricSelection& selection) {
+  RecordList records(selection);
+  for (const MetricInfo& metric : metric_catalog()) {
+    if (metric.needs_color) records.add(metric.id, [] { return Json{{"value", nullptr}}; });
+  }
+  return records.take();
+}
+
+}  // namespace cmap

@@ -1,0 +1,132 @@
+#include "cmap/eval/evaluation.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "cmap/core/error.hpp"
+#include "cmap/core/parallel.hpp"
+#include "eval/metric_records.hpp"
+#include "eval/peer_records.hpp"
+#include "eval/preparation.hpp"
+
+namespace cmap {
+namespace {
+
+/// Times the stages of the evaluation and tells the user which one runs.
+class StageClock {
+ public:
+  StageClock(std::vector<std::pair<std::string, double>>& seconds, const ProgressSink& progress)
+      : seconds_(seconds), progress_(progress) {}
+
+  template <class Work>
+  void run(const char* stage, double done_before, Work&& work) {
+    if (progress_) progress_(stage, done_before);
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    seconds_.emplace_back(stage, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+
+ private:
+  std::vector<std::pair<std::string, double>>& seconds_;
+  const ProgressSink& progress_;
+};
+
+void check_color(const PointCloud& reference, const PointCloud& estimate, const MetricSelection& selection,
+                 std::vector<Warning>& warnings) {
+  if (reference.has_color() && estimate.has_color()) return;
+  const bool asked = std::ranges::any_of(metric_catalog(), [&](const MetricInfo& metric) {
+    return metric.needs_color && selection.contains(metric.id);
+  });
+  if (!asked) return;
+  const char* which = reference.has_color() ? "the estimate has" : estimate.has_color() ? "the reference has" : "both maps have";
+  const std::string message = std::string(which) + " no color, which color metrics need";
+  if (selection.color_is_required) throw UnsupportedError(message);
+  warnings.push_back({"no_color", message + ": they are null"});
+}
+
+MapPair index_and_pair(PointCloud& reference, PointCloud& estimate, IndexKind index, StageClock& clock) {
+  std::optional<IndexedMap> indexed_reference, indexed_estimate;
+  clock.run("index", 0.2, [&] {
+    indexed_reference.emplace(reference);
+    reference = {};  // its memory is needed
+    indexed_estimate.emplace(estimate);
+    estimate = {};
+  });
+  MapPair pair{std::move(*indexed_reference), std::move(*indexed_estimate), {}, {}};
+  clock.run("nearest neighbors", 0.4, [&] {
+    pair.nearest_in_reference = find_nearest(index, pair.reference.index, pair.estimate.index.points);
+    pair.nearest_in_estimate = find_nearest(index, pair.estimate.index, pair.reference.index.points);
+  });
+  return pair;
+}
+
+/// Distance statistics of both directions, for the thresholds and, last, the overlap distance.
+void measure_distances(Findings& findings) {
+  std::vector<double> thresholds = findings.options.thresholds_m;
+  thresholds.push_back(findings.options.overlap_distance_m);
+  const auto stats = [&](const NearestField& nearest) {
+    return distance_stats(nearest.sq_dist, thresholds, findings.options.overlap_distance_m);
+  };
+  parallel_tasks({[&] { findings.estimate_to_reference = stats(findings.pair.nearest_in_reference); },
+                  [&] { findings.reference_to_estimate = stats(findings.pair.nearest_in_estimate); }});
+}
+
+void append(std::vector<MetricRecord>& all, std::vector<MetricRecord> some) {
+  std::ranges::move(some, std::back_inserter(all));
+}
+
+}  // namespace
+
+const MetricRecord* Evaluation::find(std::string_view id) const {
+  const auto record = std::ranges::find_if(metrics, [&](const MetricRecord& m) { return m.info->id == id; });
+  return record == metrics.end() ? nullptr : &*record;
+}
+
+Evaluation evaluate(PointCloud reference, PointCloud estimate, const EvaluationOptions& options,
+                    const Eigen::Matrix4d& T_ref_est, const ProgressSink& progress) {
+  const MetricSelection selection = select_metrics(options);
+  std::vector<Warning> warnings;
+  std::vector<std::pair<std::string, double>> stage_seconds;
+  StageClock clock(stage_seconds, progress);
+
+  check_color(reference, estimate, selection, warnings);
+  clock.run("prepare", 0.15, [&] { prepare_clouds(reference, estimate, options, T_ref_est, warnings); });
+  Evaluation result{options, T_ref_est, 0.0, 0.0, {}, {}, {}, {}, index_and_pair(reference, estimate, options.index, clock), {}};
+
+  Findings findings{options, selection, result.pair, {}, {}, {}, {}};
+  clock.run("geometry", 0.7, [&] {
+    measure_distances(findings);
+    result.overlap = findings.estimate_to_reference.share_within(options.thresholds_m.size());
+    result.rmse_m = std::sqrt(findings.estimate_to_reference.mean_sq_m2);
+  });
+  if (result.overlap == 0.0) {
+    warnings.push_back({"no_overlap", "no estimated point is within the overlap distance of the reference"});
+  }
+  clock.run("color", 0.75, [&] {
+    append(result.metrics, result.pair.has_color() ? color_records(findings, result.recall, warnings)
+                                                   : missing_color_records(selection));
+  });
+  append(result.metrics, geometry_records(findings));
+
+  const bool as_mapeval = std::ranges::count(options.as, "mapeval") > 0;
+  clock.run("distribution", 0.85, [&] {
+    if (as_mapeval || selection.contains("average_wasserstein") || selection.contains("spatial_consistency")) {
+      findings.gaussians = gaussian_pairs(result.pair, options.awd_voxel_m, options.awd_min_points);
+    }
+    append(result.metrics, distribution_records(findings, warnings));
+  });
+  clock.run("entropy", 0.9, [&] {
+    if (as_mapeval || selection.contains("mean_map_entropy")) {
+      findings.neighborhoods = Neighborhoods{neighborhood_shapes(result.pair.reference.index, options.mme_radius_m),
+                                             neighborhood_shapes(result.pair.estimate.index, options.mme_radius_m)};
+    }
+    append(result.metrics, entropy_records(findings, warnings));
+  });
+  clock.run("other tools", 0.95, [&] { result.aliases = peer_records(findings, warnings); });
+
+  result.warnings = std::move(warnings);
+  result.stage_seconds = std::move(stage_seconds);
+  return result;
+}
+
+}  // namespace cmap

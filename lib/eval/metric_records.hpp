@@ -1,0 +1,37 @@
+#pragma once
+
+#include "cmap/eval/evaluation.hpp"
+#include "cmap/metrics/distances.hpp"
+#include "cmap/metrics/wasserstein.hpp"
+#include "cmap/spatial/radius.hpp"
+
+namespace cmap {
+
+/// The neighborhoods of both maps' points, where mean map entropy or MapEval's is asked for.
+struct Neighborhoods {
+  NeighborhoodShape reference;
+  NeighborhoodShape estimate;
+};
+
+/// What the records are made from; whatever is not needed is left empty.
+struct Findings {
+  const EvaluationOptions& options;
+  const MetricSelection& selection;
+  const MapPair& pair;
+  DistanceStats estimate_to_reference;  ///< thresholds: the options' and, last, the overlap distance
+  DistanceStats reference_to_estimate;
+  std::vector<GaussianPair> gaussians;
+  std::optional<Neighborhoods> neighborhoods;
+};
+
+/// The records of one family, those that are selected, in the catalog's order; warnings are appended.
+std::vector<MetricRecord> geometry_records(const Findings& findings);
+std::vector<MetricRecord> color_records(const Findings& findings, std::optional<LocalColorRecall>& recall,
+                                        std::vector<Warning>& warnings);
+std::vector<MetricRecord> distribution_records(const Findings& findings, std::vector<Warning>& warnings);
+std::vector<MetricRecord> entropy_records(const Findings& findings, std::vector<Warning>& warnings);
+
+/// The selected color metrics of maps without color: null.
+std::vector<MetricRecord> missing_color_records(const MetricSelection& selection);
+
+}  // namespace cmap

@@ -1,0 +1,263 @@
+#include "cmap/eval/options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "cmap/core/error.hpp"
+#include "cmap/eval/metric_catalog.hpp"
+#include "eval/presets.hpp"
+
+namespace cmap {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+[[noreturn]] void refuse(const char* name, const Json& value, const char* rule) {
+  throw UsageError(fmt::format("{}: {} {}", name, value.dump(), rule));
+}
+
+double number(const char* name, const Json& value) {
+  if (!value.is_number() || !std::isfinite(value.get<double>())) refuse(name, value, "is not a number");
+  return value.get<double>();
+}
+
+double positive(const char* name, const Json& value) {
+  const double v = number(name, value);
+  if (!(v > 0.0)) refuse(name, value, "must be above 0");
+  return v;
+}
+
+std::uint64_t count(const char* name, const Json& value, std::uint64_t lowest, std::uint64_t highest) {
+  if (!value.is_number_integer() || value.get<double>() < static_cast<double>(lowest) ||
+      value.get<double>() > static_cast<double>(highest)) {
+    refuse(name, value, fmt::format("is not a whole number from {} to {}", lowest, highest).c_str());
+  }
+  return value.get<std::uint64_t>();
+}
+
+constexpr std::uint64_t kMostPoints = 1'000'000'000;
+
+std::vector<double> numbers(const char* name, const Json& value) {
+  if (!value.is_array() || value.empty()) refuse(name, value, "is not a list of numbers");
+  std::vector<double> list;
+  for (const Json& item : value) list.push_back(number(name, item));
+  return list;
+}
+
+std::vector<double> thresholds(const char* name, const Json& value) {
+  std::vector<double> list = numbers(name, value);
+  for (double v : list) {
+    if (!(v > 0.0)) refuse(name, value, "must be above 0 throughout");
+    if (std::ranges::count(list, v) > 1) refuse(name, value, "names a threshold twice");
+  }
+  return list;
+}
+
+std::vector<std::string> words(const char* name, const Json& value) {
+  const auto is_word = [](const Json& item) { return item.is_string(); };
+  if (!value.is_array() || !std::ranges::all_of(value, is_word)) refuse(name, value, "is not a list of words");
+  return value.get<std::vector<std::string>>();
+}
+
+std::vector<std::string> tools(const char* name, const Json& value) {
+  static const std::vector<std::string> kTools{"mapeval", "open3d", "mpeg", "cloudcompare"};
+  std::vector<std::string> list = words(name, value);
+  for (const std::string& tool : list) {
+    if (std::ranges::count(kTools, tool) == 0) refuse(name, tool, "is unknown; tools are mapeval, open3d, mpeg, cloudcompare");
+  }
+  return list;
+}
+
+std::vector<std::string> metric_names(const char* name, const Json& value) {
+  EvaluationOptions checked;
+  checked.metrics = words(name, value);
+  if (checked.metrics.empty()) refuse(name, value, "names no metric");
+  select_metrics(checked);
+  return checked.metrics;
+}
+
+Box3d crop_box(const char* name, const Json& value) {
+  const std::vector<double> v = numbers(name, value);
+  if (v.size() != 6) refuse(name, value, "is not xmin,ymin,zmin,xmax,ymax,zmax");
+  const Box3d box{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
+  if ((box.max.array() < box.min.array()).any()) refuse(name, value, "has a maximum below its minimum");
+  return box;
+}
+
+IndexKind index_kind(const char* name, const Json& value) {
+  if (value == "bvh") return IndexKind::kBvh;
+  if (value == "flann") return IndexKind::kFlann;
+  refuse(name, value, "is neither bvh nor flann");
+}
+
+bool flag(const char* name, const Json& value) {
+  if (!value.is_boolean()) refuse(name, value, "is neither true nor false");
+  return value.get<bool>();
+}
+
+Json optional_number(const std::optional<double>& v) { return v ? Json(*v) : Json(nullptr); }
+
+/// null in a file leaves an optional option unset.
+std::optional<double> positive_or_unset(const char* name, const Json& value) {
+  if (value.is_null()) return std::nullopt;
+  return positive(name, value);
+}
+
+Json crop_json(const EvaluationOptions& o) {
+  if (!o.crop) return nullptr;
+  return {o.crop->min.x(), o.crop->min.y(), o.crop->min.z(), o.crop->max.x(), o.crop->max.y(), o.crop->max.z()};
+}
+
+/// A number from all of the text.
+double number_from_text(const OptionSpec& spec, const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) {
+    throw UsageError(fmt::format("{}: \"{}\" is not a number", spec.name, text));
+  }
+  return value;
+}
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
+  return parts;
+}
+
+Json value_from_text(const OptionSpec& spec, const std::string& text) {
+  switch (spec.kind) {
+    case OptionKind::kNumber:
+      return number_from_text(spec, text);
+    case OptionKind::kCount: {
+      const double v = number_from_text(spec, text);
+      return v == std::floor(v) && std::abs(v) < 1e15 ? Json(static_cast<std::int64_t>(v)) : Json(v);
+    }
+    case OptionKind::kFlag:
+      return text == "true" ? Json(true) : text == "false" ? Json(false) : Json(text);
+    case OptionKind::kNumbers: {
+      Json list = Json::array();
+      for (const std::string& part : split(text)) list.push_back(number_from_text(spec, part));
+      return list;
+    }
+    case OptionKind::kWords:
+      return split(text);
+    case OptionKind::kWord:
+      return text;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+// One line for each option: name, kind, placeholder, help, setter, getter.
+#define CMAP_OPTION(name, kind, placeholder, help, field, checked, json)                                    \
+  OptionSpec {                                                                                              \
+    name, OptionKind::kind, placeholder, help,                                                              \
+        [](EvaluationOptions& o, const Json& value) {                                                       \
+          constexpr const char* n = name;                                                                   \
+          o.field = checked;                                                                                \
+        },                                                                                                  \
+        [](const EvaluationOptions& o) -> Json { return json; }                                             \
+  }
+
+const std::vector<OptionSpec>& evaluation_option_specs() {
+  static const std::vector<OptionSpec> specs{
+      CMAP_OPTION("metrics", kWords, "LIST", "groups (color, color+, geometry, distribution, mme, all) or metric ids",
+                  metrics, metric_names(n, value), o.metrics),
+      CMAP_OPTION("thresholds", kNumbers, "METERS,...", "of accuracy, fitness, completeness, F-score", thresholds_m,
+                  thresholds(n, value), o.thresholds_m),
+      CMAP_OPTION("overlap-distance", kNumber, "METERS", "of overlap, truncated Chamfer and inlier RMSE",
+                  overlap_distance_m, positive(n, value), o.overlap_distance_m),
+      CMAP_OPTION("lcr-tau", kNumber, "TAU", "a color is right within 3 tau, unit RGB", lcr_tau, positive(n, value),
+                  o.lcr_tau),
+      CMAP_OPTION("lcr-radius", kNumber, "METERS", "within which LCR looks for the right color", lcr_radius_m,
+                  positive(n, value), o.lcr_radius_m),
+      CMAP_OPTION("lcr-curve", kFlag, "", "LCR for tau = 0.02 ... 0.30 and the area under the curve", lcr_curve,
+                  flag(n, value), o.lcr_curve),
+      CMAP_OPTION("ccs-voxel", kNumber, "METERS", "voxel of color consistency", ccs_voxel_m, positive(n, value),
+                  o.ccs_voxel_m),
+      CMAP_OPTION("ccs-min-points", kCount, "N", "points that such a voxel needs", ccs_min_points,
+                  count(n, value, 2, kMostPoints), o.ccs_min_points),
+      CMAP_OPTION("awd-voxel", kNumber, "METERS", "voxel of the average Wasserstein distance", awd_voxel_m,
+                  positive(n, value), o.awd_voxel_m),
+      CMAP_OPTION("awd-min-points", kCount, "N", "points of each map that such a voxel needs", awd_min_points,
+                  count(n, value, 2, kMostPoints), o.awd_min_points),
+      CMAP_OPTION("scs-radius", kCount, "VOXELS", "neighborhood of spatial consistency", scs_radius_voxels,
+                  count(n, value, 1, 1000), o.scs_radius_voxels),
+      CMAP_OPTION("mme-radius", kNumber, "METERS", "neighborhood of mean map entropy", mme_radius_m, positive(n, value),
+                  o.mme_radius_m),
+      CMAP_OPTION("mme-min-neighbors", kCount, "N", "neighbors that a point needs", mme_min_neighbors,
+                  count(n, value, 2, kMostPoints), o.mme_min_neighbors),
+      CMAP_OPTION("color-max-distance", kNumber, "METERS", "leave farther pairs out of color distance",
+                  color_max_distance_m, positive_or_unset(n, value), optional_number(o.color_max_distance_m)),
+      CMAP_OPTION("voxel", kNumber, "METERS", "thin both maps first: mean position and color per voxel", voxel_m,
+                  positive_or_unset(n, value), optional_number(o.voxel_m)),
+      CMAP_OPTION("crop", kNumbers, "X0,Y0,Z0,X1,Y1,Z1", "keep this box of both maps, in the reference frame", crop,
+                  value.is_null() ? std::nullopt : std::optional(crop_box(n, value)), crop_json(o)),
+      CMAP_OPTION("as", kWords, "TOOLS", "also what mapeval, open3d, mpeg or cloudcompare would print", as,
+                  tools(n, value), o.as),
+      CMAP_OPTION("index", kWord, "bvh|flann", "nearest-neighbor index", index, index_kind(n, value),
+                  o.index == IndexKind::kFlann ? "flann" : "bvh"),
+  };
+  return specs;
+}
+
+#undef CMAP_OPTION
+
+void set_option(EvaluationOptions& options, const OptionSpec& spec, const std::string& text) {
+  spec.set(options, value_from_text(spec, text));
+}
+
+void apply_config(EvaluationOptions& options, const std::string& json_text, const std::string& source) {
+  try {
+    const Json config = Json::parse(json_text, nullptr, true, /*ignore_comments=*/true);
+    if (!config.is_object()) throw UsageError("expected a JSON object of options");
+    for (const auto& [key, value] : config.items()) {
+      const auto spec = std::ranges::find_if(evaluation_option_specs(), [&](const auto& s) { return key == s.name; });
+      if (spec == evaluation_option_specs().end()) throw UsageError(fmt::format("unknown key \"{}\"", key));
+      spec->set(options, value);
+    }
+  } catch (const Json::exception& error) {
+    throw UsageError(fmt::format("{}: {}", source, error.what()));
+  } catch (const UsageError& error) {
+    throw UsageError(fmt::format("{}: {}", source, error.what()));
+  }
+}
+
+void apply_config_file(EvaluationOptions& options, const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file || std::filesystem::is_directory(path)) {
+    throw UsageError(fmt::format("{}: cannot be read as a configuration file", path.string()));
+  }
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  apply_config(options, text, path.string());
+}
+
+std::vector<std::string> preset_names() {
+  std::vector<std::string> names;
+  for (const Preset& preset : presets()) names.emplace_back(preset.name);
+  return names;
+}
+
+void apply_preset(EvaluationOptions& options, const std::string& name) {
+  for (const Preset& preset : presets()) {
+    if (preset.name == name) return apply_config(options, std::string(preset.json), "preset " + name);
+  }
+  throw UsageError(fmt::format("preset: \"{}\" is unknown; presets are paper, indoor, outdoor, aerial, mapeval", name));
+}
+
+Json to_json(const EvaluationOptions& options) {
+  Json json;
+  for (const OptionSpec& spec : evaluation_option_specs()) json[spec.name] = spec.get(options);
+  return json;
+}
+
+}  // namespace cmap

@@ -1,0 +1,107 @@
+#include "eval/peer_records.hpp"
+
+#include <cmath>
+
+#include "cmap/metrics/peers.hpp"
+#include "eval/json_number.hpp"
+
+namespace cmap {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// MapEval's least neighbors in the reference; mme-min-neighbors is the estimate's.
+constexpr std::uint64_t kMapEvalReferenceNeighbors = 5;
+
+Json mapeval_record(const Findings& f) {
+  const MapEvalAccuracy accuracy =
+      mapeval_accuracy(f.pair.nearest_in_reference.sq_dist, f.options.thresholds_m, f.options.overlap_distance_m);
+  Json levels = Json::array();
+  for (std::size_t t = 0; t < f.options.thresholds_m.size(); ++t) {
+    levels.push_back({{"threshold_m", f.options.thresholds_m[t]},
+                      {"AC", json_number(accuracy.accuracy_m[t])},
+                      {"COM", accuracy.completeness[t]}});
+  }
+  const std::vector<VoxelDistance> distances = mapeval_wasserstein_distances(f.gaussians);
+  const MapEvalEntropy estimate = mapeval_entropy(f.neighborhoods->estimate, f.options.mme_min_neighbors);
+  const MapEvalEntropy reference = mapeval_entropy(f.neighborhoods->reference, kMapEvalReferenceNeighbors);
+  return {{"definition", "MapEval 1.0.0 with its initial matrix only"},
+          {"per_threshold", levels},
+          {"n_correspondences", accuracy.n_correspondences},
+          {"AWD", json_number(average_wasserstein(distances).mean_m)},
+          {"SCS", json_number(spatial_consistency(distances, static_cast<int>(f.options.scs_radius_voxels)).value)},
+          {"n_voxels", distances.size()},
+          {"MME",
+           {{"estimate", json_number(estimate.value)},
+            {"reference", json_number(reference.value)},
+            {"valid_estimate", estimate.n_valid},
+            {"valid_reference", reference.n_valid}}}};
+}
+
+Json open3d_record(const Findings& f) {
+  Json levels = Json::array();
+  for (double threshold : f.options.thresholds_m) {
+    const Open3dRegistration r = open3d_registration(f.pair.nearest_in_reference.sq_dist, threshold);
+    levels.push_back({{"threshold_m", threshold},
+                      {"fitness", r.fitness},
+                      {"inlier_rmse", r.inlier_rmse_m},
+                      {"correspondences", r.n_correspondences}});
+  }
+  return {{"definition", "Open3D 0.16 evaluate_registration, compute_point_cloud_distance"},
+          {"per_threshold", levels},
+          {"mean_distance",
+           {{"estimate_to_reference", f.estimate_to_reference.mean_m},
+            {"reference_to_estimate", f.reference_to_estimate.mean_m}}}};
+}
+
+Json cloudcompare_record(const Findings& f) {
+  const CloudCompareDistance d = cloudcompare_distance(f.pair.nearest_in_reference.sq_dist);
+  return {{"definition", "CloudCompare 2.11 -C2C_DIST, estimate compared with reference"},
+          {"mean", d.mean_m},
+          {"std", d.standard_deviation_m}};
+}
+
+MpegCloud mpeg_cloud(const IndexedMap& map) {
+  MpegCloud cloud;
+  for (std::size_t slot = 0; slot < map.size(); ++slot) {
+    cloud.positions.push_back(map.index.points.offset(slot));
+    std::array<std::uint8_t, 3> rgb{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      rgb[c] = static_cast<std::uint8_t>(std::lround(map.color(slot)[static_cast<Eigen::Index>(c)]));
+    }
+    cloud.rgb.push_back(rgb);
+  }
+  return cloud;
+}
+
+Json mpeg_record(const Findings& f, std::vector<Warning>& warnings) {
+  if (!f.pair.has_color()) {
+    warnings.push_back({"mpeg_needs_color", "pc_error's color numbers need color in both maps: null"});
+    return nullptr;
+  }
+  const auto direction = [](const MpegDirection& d) -> Json {
+    Json psnr = Json::array();
+    for (double db : d.color_psnr_db) psnr.push_back(json_number(db));
+    return {{"point_mse", d.point_mse_m2}, {"hausdorff_squared", d.sq_hausdorff_m2}, {"color_mse", d.color_mse}, {"color_psnr", psnr}};
+  };
+  const MpegDistortion d = mpeg_distortion(mpeg_cloud(f.pair.reference), mpeg_cloud(f.pair.estimate));
+  return {{"definition", "mpeg-pcc-dmetric 0.14 pc_error, point to point and color (BT.709, peak 1)"},
+          {"reference_to_estimate", direction(d.reference_to_estimate)},
+          {"estimate_to_reference", direction(d.estimate_to_reference)},
+          {"symmetric", direction(d.symmetric)}};
+}
+
+}  // namespace
+
+Json peer_records(const Findings& f, std::vector<Warning>& warnings) {
+  Json records;
+  for (const std::string& tool : f.options.as) {
+    if (tool == "mapeval") records[tool] = mapeval_record(f);
+    if (tool == "open3d") records[tool] = open3d_record(f);
+    if (tool == "cloudcompare") records[tool] = cloudcompare_record(f);
+    if (tool == "mpeg") records[tool] = mpeg_record(f, warnings);
+  }
+  return records;
+}
+
+}  // namespace cmap

@@ -1,0 +1,70 @@
+#include "cmap/eval/point_errors.hpp"
+
+#include <cmath>
+
+#include "cmap/io/point_cloud_file.hpp"
+
+namespace cmap {
+namespace {
+
+std::uint8_t to_8bit(float value_255) { return static_cast<std::uint8_t>(std::lround(value_255)); }
+
+/// The map in its own order; colors as 8 bit.
+PointCloud point_cloud(const IndexedMap& map) {
+  const PointBlocks& points = map.index.points;
+  PointCloud cloud;
+  cloud.origin = points.origin;
+  cloud.positions.resize(points.size);
+  Array<Rgb8> colors(map.has_color() ? points.size : 0);
+  for (std::size_t slot = 0; slot < points.size; ++slot) {
+    const std::uint32_t i = points.original_index[slot];
+    cloud.positions[i] = points.offset(slot);
+    if (!map.has_color()) continue;
+    const Eigen::Vector3f color = color_at(map.colors, slot);
+    colors[i] = {to_8bit(color.x()), to_8bit(color.y()), to_8bit(color.z())};
+  }
+  if (map.has_color()) cloud.colors = std::move(colors);
+  return cloud;
+}
+
+/// A field in the map's own order from a value for every slot.
+template <class ValueAt>
+Array<float> field(const PointBlocks& points, ValueAt&& value_at) {
+  Array<float> values(points.size);
+  for (std::size_t slot = 0; slot < points.size; ++slot) {
+    values[points.original_index[slot]] = static_cast<float>(value_at(slot));
+  }
+  return values;
+}
+
+void write_errors(const Evaluation& evaluation, const NearestPairs& pairs, const LocalColorRecall* recall,
+                  const std::filesystem::path& path) {
+  const PointBlocks& points = pairs.from.index.points;
+  const Array<float> distances = field(points, [&](std::size_t slot) { return pairs.distance_m(slot); });
+  std::vector<PointField> fields{{"scalar_distance_m", distances}};
+  Array<float> color_distances, recall_classes;
+  if (evaluation.pair.has_color()) {
+    color_distances = field(points, [&](std::size_t slot) {
+      return (pairs.from_color(slot) - pairs.to_color(slot)).norm() / 255.0;
+    });
+    fields.push_back({"scalar_color_distance", color_distances});
+  }
+  if (recall != nullptr) {
+    recall_classes = field(points, [&](std::size_t slot) { return static_cast<int>(recall->classes[slot]); });
+    fields.push_back({"scalar_lcr", recall_classes});
+  }
+  write_ply(path, point_cloud(pairs.from), fields);
+}
+
+}  // namespace
+
+void write_estimate_errors(const Evaluation& evaluation, const std::filesystem::path& path) {
+  write_errors(evaluation, evaluation.pair.estimate_to_reference(), nullptr, path);
+}
+
+void write_reference_errors(const Evaluation& evaluation, const std::filesystem::path& path) {
+  write_errors(evaluation, evaluation.pair.reference_to_estimate(), evaluation.recall ? &*evaluation.recall : nullptr,
+               path);
+}
+
+}  // namespace cmap

@@ -1,0 +1,90 @@
+#include "cmap/eval/requirement.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <regex>
+
+#include "cmap/core/error.hpp"
+
+namespace cmap {
+namespace {
+
+[[noreturn]] void refuse(const std::string& text, const std::string& reason) {
+  throw UsageError(fmt::format("require \"{}\": {}", text, reason));
+}
+
+bool compare(double value, const std::string& comparison, double bound) {
+  if (comparison == ">=") return value >= bound;
+  if (comparison == "<=") return value <= bound;
+  if (comparison == ">") return value > bound;
+  if (comparison == "<") return value < bound;
+  return value == bound;
+}
+
+void check_threshold(const Requirement& requirement, const EvaluationOptions& options) {
+  const MetricInfo& metric = *requirement.metric;
+  if (!metric.per_threshold) {
+    if (requirement.threshold_m) refuse(requirement.text, fmt::format("{} has no thresholds", metric.id));
+    return;
+  }
+  if (!requirement.threshold_m) {
+    refuse(requirement.text, fmt::format("{} has one value for each threshold: write {}@{}", metric.id, metric.id,
+                                         options.thresholds_m.front()));
+  }
+  if (std::ranges::count(options.thresholds_m, *requirement.threshold_m) == 0) {
+    refuse(requirement.text, fmt::format("{} m is not among the thresholds", *requirement.threshold_m));
+  }
+}
+
+/// The part of a record that the requirement is about.
+const nlohmann::ordered_json& part_of(const MetricRecord& record, const Requirement& requirement) {
+  if (!requirement.threshold_m) return record.fields;
+  for (const auto& entry : record.fields.at("per_threshold")) {
+    if (entry.at("threshold_m") == *requirement.threshold_m) return entry;
+  }
+  refuse(requirement.text, "no such threshold");
+}
+
+}  // namespace
+
+Requirement parse_requirement(const std::string& text, const EvaluationOptions& options) {
+  static const std::regex kForm(R"(\s*([A-Za-z_0-9]+#?)((?:\.[A-Za-z_0-9]+)*)(?:@([0-9.eE+-]+))?\s*(>=|<=|==|>|<)\s*([-+0-9.eE]+)\s*)");
+  std::smatch match;
+  if (!std::regex_match(text, match, kForm)) refuse(text, "expected METRIC[@THRESHOLD] >= NUMBER (or <=, >, <, ==)");
+  const auto number = [&](const std::string& digits) {
+    char* end = nullptr;
+    const double value = std::strtod(digits.c_str(), &end);
+    if (end != digits.c_str() + digits.size()) refuse(text, fmt::format("\"{}\" is not a number", digits));
+    return value;
+  };
+  Requirement requirement{text, find_metric(match[1].str()), std::nullopt, match[2].str(), match[4].str(), number(match[5].str())};
+  if (match[3].matched) requirement.threshold_m = number(match[3].str());
+  if (requirement.metric == nullptr) refuse(text, fmt::format("unknown metric \"{}\"", match[1].str()));
+  if (!select_metrics(options).contains(requirement.metric->id)) {
+    refuse(text, fmt::format("{} is not computed; add it to --metrics", requirement.metric->id));
+  }
+  check_threshold(requirement, options);
+  return requirement;
+}
+
+RequirementOutcome check(const Requirement& requirement, const Evaluation& evaluation) {
+  const MetricRecord* record = evaluation.find(requirement.metric->id);
+  if (record == nullptr) refuse(requirement.text, "the metric was not computed");
+  const auto& part = part_of(*record, requirement);
+  std::string path = requirement.field.empty() ? "/value" : requirement.field;
+  std::ranges::replace(path, '.', '/');
+  const nlohmann::ordered_json::json_pointer pointer(path);
+  // A metric that has no value at all, for want of color, has no other field either.
+  if (!part.contains(pointer)) {
+    if (part.contains("value") && part.at("value").is_null()) return {false, std::nullopt};
+    refuse(requirement.text, fmt::format("{} has no field {}", requirement.metric->id, requirement.field));
+  }
+  const auto& value = part.at(pointer);
+  if (value.is_null()) return {false, std::nullopt};
+  if (!value.is_number()) refuse(requirement.text, fmt::format("{} is not a number", requirement.field));
+  return {compare(value.get<double>(), requirement.comparison, requirement.bound), value.get<double>()};
+}
+
+}  // namespace cmap

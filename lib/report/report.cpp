@@ -1,0 +1,109 @@
+#include "cmap/report/report.hpp"
+
+#include <sys/resource.h>
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "cmap/core/version.hpp"
+
+namespace cmap {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+Json input_json(const InputDescription& input) {
+  return {{"path", input.file.path},
+          {"sha256", input.file.sha256},
+          {"format", input.file.format},
+          {"points", input.file.points},
+          {"finite_points", input.file.finite_points},
+          {"color", input.color},
+          {"origin_m", vector_json(input.origin_m)},
+          {"bounds_m", {{"min", vector_json(input.bounds_m.min)}, {"max", vector_json(input.bounds_m.max)}}}};
+}
+
+Json matrix_json(const Eigen::Matrix4d& T) {
+  Json rows = Json::array();
+  for (Eigen::Index r = 0; r < 4; ++r) rows.push_back({T(r, 0), T(r, 1), T(r, 2), T(r, 3)});
+  return rows;
+}
+
+Json alignment_json(const Evaluation& evaluation) {
+  const Eigen::Matrix4d& T = evaluation.T_ref_est;
+  const bool given = T != Eigen::Matrix4d::Identity();
+  return {{"method", given ? "given" : "none"},
+          {"T_ref_est", matrix_json(T)},
+          {"scale", given ? std::cbrt(T.topLeftCorner<3, 3>().determinant()) : 1.0},
+          {"before", nullptr},
+          {"overlap", evaluation.overlap},
+          {"rmse_m", evaluation.rmse_m}};
+}
+
+Json metric_json(const MetricRecord& record) {
+  Json json = record.fields;
+  json["unit"] = record.info->unit;
+  json["better"] = record.info->better;
+  json["symbol"] = record.info->symbol;
+  if (!json.contains("parameters")) json["parameters"] = Json::object();
+  return json;
+}
+
+std::uint64_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+Json run_json(const RunDescription& run) {
+  Json stages = Json::object();
+  for (const auto& [name, seconds] : run.stage_seconds) stages[name] = seconds;
+  return {{"command", run.command},   {"started_utc", run.started_utc},
+          {"wall_s", run.wall_s},     {"stages", stages},
+          {"threads", run.threads},   {"simd", run.simd},
+          {"peak_memory_bytes", peak_memory_bytes()}};
+}
+
+/// What readers decided on the user's behalf.
+void add_input_warnings(Json& warnings, const char* which, const InputDescription& input) {
+  const std::uint64_t dropped = input.file.points - input.file.finite_points;
+  if (dropped > 0) {
+    warnings.push_back({{"id", "non_finite_points_dropped"},
+                        {"message", std::string(which) + ": " + std::to_string(dropped) + " of " +
+                                        std::to_string(input.file.points) + " points are not finite and were dropped"}});
+  }
+  for (const std::string& note : input.file.notes) {
+    warnings.push_back({{"id", "input_note"}, {"message", std::string(which) + ": " + note}});
+  }
+}
+
+}  // namespace
+
+InputDescription describe(const PointCloudFile& file) {
+  return {file.info, std::string(color_type_name(file.cloud.colors)), file.cloud.origin, bounds(file.cloud)};
+}
+
+Json make_report(const InputDescription& reference, const InputDescription& estimate, const Evaluation& evaluation,
+                 const RunDescription& run) {
+  Json report;
+  report["schema"] = "cmap.report/1";
+  report["tool"] = {{"name", "cmap_eval"}, {"version", kVersion}};
+  report["inputs"] = {{"reference", input_json(reference)}, {"estimate", input_json(estimate)}};
+  report["parameters"] = to_json(evaluation.options);
+  report["alignment"] = alignment_json(evaluation);
+  report["metrics"] = Json::object();
+  for (const MetricRecord& record : evaluation.metrics) report["metrics"][record.info->id] = metric_json(record);
+  if (!evaluation.aliases.is_null()) report["aliases"] = evaluation.aliases;
+  report["warnings"] = Json::array();
+  add_input_warnings(report["warnings"], "reference", reference);
+  add_input_warnings(report["warnings"], "estimate", estimate);
+  for (const Warning& warning : evaluation.warnings) {
+    report["warnings"].push_back({{"id", warning.id}, {"message", warning.message}});
+  }
+  report["run"] = run_json(run);
+  return report;
+}
+
+}  // namespace cmap

@@ -1,0 +1,163 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "cmap/report/report.hpp"
+
+namespace cmap {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kMissing = "-";
+
+/// Four significant digits, as readers of such tables expect; plain for ordinary sizes.
+std::string digits(const Json& value) {
+  if (!value.is_number()) return std::string(kMissing);
+  const double v = value.get<double>();
+  if (v == 0.0) return "0";
+  const double magnitude = std::abs(v);
+  if (magnitude < 1e-4 || magnitude >= 1e6) return fmt::format("{:.3e}", v);
+  const int before_point = static_cast<int>(std::floor(std::log10(magnitude))) + 1;
+  return fmt::format("{:.{}f}", v, std::max(0, 4 - before_point));
+}
+
+/// A share as a percentage.
+std::string percent(const Json& value) {
+  return value.is_number() ? fmt::format("{:.2f} %", 100.0 * value.get<double>()) : std::string(kMissing);
+}
+
+std::string with_thousands(const Json& count) {
+  std::string text = std::to_string(count.get<std::uint64_t>());
+  for (std::size_t place = text.size(); place > 3; place -= 3) text.insert(text.begin() + static_cast<std::ptrdiff_t>(place - 3), ',');
+  return text;
+}
+
+std::string_view arrow(const Json& metric) {
+  const Json& better = metric.at("better");
+  return better == "lower" ? "↓" : better == "higher" ? "↑" : " ";
+}
+
+/// Pads by characters, not bytes: arrows and deltas are several bytes long.
+std::string padded(std::string_view text, std::size_t width) {
+  std::size_t characters = 0;
+  for (char c : text) characters += (static_cast<unsigned char>(c) & 0xC0) != 0x80 ? 1 : 0;
+  return std::string(text) + std::string(width > characters ? width - characters : 0, ' ');
+}
+
+std::string row(std::string_view title, const Json& metric, const std::string& value, std::string_view unit,
+                const std::string& remark) {
+  const std::string symbol = metric.at("symbol").get<std::string>();
+  const std::string line = fmt::format("  {} {} {} {} {} {}", padded(title, 30), padded(symbol, 8), arrow(metric),
+                                       fmt::format("{:>11}", value), padded(unit, 10), remark);
+  return line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+}
+
+bool is_share(const MetricInfo& info) {
+  return info.id == "overlap" || info.id == "local_color_recall" || info.id == "fitness" || info.id == "completeness" ||
+         info.id == "f_score";
+}
+
+std::string meters(const Json& v) { return fmt::format("{} m", v.get<double>()); }
+
+/// What a reader needs beside the value: the parameters that matter, or a second number that belongs to it.
+std::string remark(const MetricInfo& info, const Json& metric) {
+  const Json& parameters = metric.at("parameters");
+  if (metric.at("value").is_null()) return "";
+  if (info.id == "color_distance") return fmt::format("{} of 255", digits(metric.at("value_8bit")));
+  if (info.id == "local_color_recall") {
+    return fmt::format("coverage {}, of it {}   tau {}, r {}", percent(metric.at("coverage")),
+                       percent(metric.at("conditional")), parameters.at("tau").get<double>(), meters(parameters.at("radius_m")));
+  }
+  if (info.id == "color_consistency" || info.id == "average_wasserstein") {
+    return fmt::format("{} voxels of {}, >= {} points", with_thousands(metric.at("n_voxels")),
+                       meters(parameters.at("voxel_m")), parameters.at("min_points").get<std::uint64_t>());
+  }
+  if (info.id == "spatial_consistency") return fmt::format("within {} voxels", parameters.at("radius_voxels").get<int>());
+  if (info.id == "overlap") return fmt::format("within {}", meters(parameters.at("overlap_distance_m")));
+  if (info.id == "rmse") return fmt::format("inliers {}", digits(metric.at("inlier_rmse")));
+  if (info.id == "chamfer") {
+    return fmt::format("estimate {} + reference {}", digits(metric.at("estimate_to_reference")),
+                       digits(metric.at("reference_to_estimate")));
+  }
+  if (info.id == "hausdorff") return fmt::format("95 %: {}", digits(metric.at("estimate_to_reference").at("p95")));
+  if (info.id == "mean_map_entropy") {
+    return fmt::format("r {}, reference {}", meters(parameters.at("radius_m")), digits(metric.at("reference").at("value")));
+  }
+  return "";
+}
+
+std::string unit_of(const MetricInfo& info) { return info.unit == "1" ? "" : std::string(info.unit); }
+
+std::string value_rows(const MetricInfo& info, const Json& metric) {
+  const bool share = is_share(info);
+  const auto shown = [&](const Json& value) { return share ? percent(value) : digits(value); };
+  if (metric.contains("per_threshold")) {
+    std::string rows;
+    for (const Json& entry : metric.at("per_threshold")) {
+      const std::string title = fmt::format("{} @ {}", rows.empty() ? info.title : "", meters(entry.at("threshold_m")));
+      rows += row(rows.empty() ? title : fmt::format("{:>{}}", title, info.title.size() + title.size()), metric,
+                  shown(entry.at("value")), unit_of(info), "");
+    }
+    return rows;
+  }
+  if (metric.contains("per_range")) {
+    std::string rows;
+    for (const Json& bin : metric.at("per_range")) {
+      rows += row(fmt::format("CD at {} to {} m", bin.at("lo_m").get<double>(), bin.at("hi_m").get<double>()), metric,
+                  digits(bin.at("value")), unit_of(info), "");
+    }
+    return rows;
+  }
+  return row(info.title, metric, shown(metric.at("value")), unit_of(info), remark(info, metric));
+}
+
+std::string input_line(const char* which, const Json& input) {
+  return fmt::format("{:<9} {}: {} points, {}, color {}\n", which, input.at("path").get<std::string>(),
+                     with_thousands(input.at("finite_points")), input.at("format").get<std::string>(),
+                     input.at("color").get<std::string>());
+}
+
+std::string alias_lines(const std::string& prefix, const Json& value) {
+  if (value.is_object()) {
+    std::string lines;
+    for (const auto& [key, item] : value.items()) lines += alias_lines(fmt::format("{} {}", prefix, key), item);
+    return lines;
+  }
+  if (value.is_array() && !value.empty() && value.front().is_object()) {
+    std::string lines;
+    for (const Json& entry : value) {
+      const std::string at = fmt::format("{} @ {}", prefix, meters(entry.at("threshold_m")));
+      for (const auto& [key, item] : entry.items()) {
+        if (key != "threshold_m") lines += alias_lines(fmt::format("{} {}", at, key), item);
+      }
+    }
+    return lines;
+  }
+  return fmt::format("  {} {}\n", padded(prefix, 46), value.is_string() ? value.get<std::string>() : value.dump());
+}
+
+}  // namespace
+
+std::string format_table(const Json& report) {
+  std::string table = input_line("reference", report.at("inputs").at("reference")) +
+                      input_line("estimate", report.at("inputs").at("estimate"));
+  std::string_view group;
+  for (const MetricInfo& info : metric_catalog()) {
+    if (!report.at("metrics").contains(info.id)) continue;
+    if (info.group != group) table += fmt::format("\n{}\n", info.group == "mme" ? "entropy" : info.group);
+    group = info.group;
+    table += value_rows(info, report.at("metrics").at(info.id));
+  }
+  if (report.contains("aliases")) {
+    for (const auto& [tool, record] : report.at("aliases").items()) table += fmt::format("\nas {}\n{}", tool, alias_lines("", record));
+  }
+  const Json& warnings = report.at("warnings");
+  if (!warnings.empty()) table += "\nwarnings\n";
+  for (const Json& warning : warnings) {
+    table += fmt::format("  {}: {}\n", warning.at("id").get<std::string>(), warning.at("message").get<std::string>());
+  }
+  return table;
+}
+
+}  // namespace cmap

@@ -1,0 +1,191 @@
+// cmap_eval REF EST: every metric of one pair of maps.
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <map>
+
+#include "cmap/core/error.hpp"
+#include "cmap/core/parallel.hpp"
+#include "cmap/core/simd.hpp"
+#include "cmap/core/version.hpp"
+#include "cmap/eval/point_errors.hpp"
+#include "cmap/eval/requirement.hpp"
+#include "cmap/io/output_file.hpp"
+#include "cmap/io/transform_file.hpp"
+#include "cmap/report/report.hpp"
+
+namespace {
+
+using cmap::ExitCode;
+
+constexpr const char* kDescription =
+    "Evaluates an estimated point-cloud map against a reference: color, geometry and distribution metrics.\n"
+    "Reads PLY, PCD, LAS and text.";
+
+constexpr const char* kExample =
+    "Example:\n"
+    "  cmap_eval data_samples/town/reference.ply data_samples/town/estimate.ply -o report.json --require 'LCR>=0.2'\n"
+    "\n"
+    "Exit codes: 0 done; 1 a --require did not hold; 2 wrong usage or configuration; 3 an input is missing, malformed\n"
+    "or without a finite point; 4 the inputs do not support what was asked; 70 internal error.";
+
+/// The command line as given.
+struct Arguments {
+  std::string reference, estimate;
+  std::string output, format = "table", config, preset, transform;
+  std::string estimate_errors, reference_errors;
+  std::vector<std::string> requirements;
+  std::map<std::string, std::string> option_texts;  ///< evaluation options by name
+  int threads = 0;
+  bool quiet = false;
+};
+
+void add_evaluation_options(CLI::App& app, Arguments& arguments) {
+  for (const cmap::OptionSpec& spec : cmap::evaluation_option_specs()) {
+    std::string& text = arguments.option_texts[spec.name];
+    const std::string flag = std::string("--") + spec.name;
+    if (spec.kind == cmap::OptionKind::kFlag) {
+      app.add_flag_callback(flag, [&text] { text = "true"; }, spec.help)->group("Metrics");
+      continue;
+    }
+    const auto shown_default = spec.get(cmap::EvaluationOptions{});
+    std::string help = spec.help;
+    if (!shown_default.is_null() && !shown_default.empty()) {
+      help += shown_default.is_array() ? fmt::format(" [{}]", fmt::join(shown_default.get<std::vector<double>>(), ","))
+                                       : fmt::format(" [{}]", shown_default.is_string() ? shown_default.get<std::string>()
+                                                                                        : shown_default.dump());
+    }
+    app.add_option(flag, text, help)->type_name(spec.placeholder)->group("Metrics");
+  }
+}
+
+void add_options(CLI::App& app, Arguments& a) {
+  app.add_option("REF", a.reference, "reference map")->required()->type_name("FILE");
+  app.add_option("EST", a.estimate, "estimated map")->required()->type_name("FILE");
+  app.add_option("-o,--output", a.output, "write the JSON report here")->type_name("FILE");
+  app.add_option("--format", a.format, "what to print: table or json [table]")
+      ->type_name("FORMAT")
+      ->check(CLI::IsMember({"table", "json"}));
+  app.add_option("--config", a.config, "JSON file of the options under Metrics; the command line wins")->type_name("FILE");
+  app.add_option("--preset", a.preset, "shipped configuration: paper, indoor, outdoor, aerial, mapeval")->type_name("NAME");
+  app.add_option("--transform", a.transform, "4x4 matrix T_ref_est that moves the estimate into the reference frame")
+      ->type_name("FILE");
+  app.add_option("--require", a.requirements, "exit 1 unless it holds: LCR>=0.2, accuracy@0.1<=0.06; repeatable")
+      ->type_name("EXPR")
+      ->allow_extra_args(false);
+  app.add_option("--export-errors", a.estimate_errors, "PLY of the estimate with its distance and color errors")
+      ->type_name("FILE.ply");
+  app.add_option("--export-reference-errors", a.reference_errors, "the same for the reference, with LCR hits")
+      ->type_name("FILE.ply");
+  app.add_option("--threads", a.threads, "threads to use [all]")->type_name("N")->check(CLI::Range(1, 4096));
+  app.add_flag("--quiet", a.quiet, "no table, no progress");
+  add_evaluation_options(app, a);
+}
+
+cmap::EvaluationOptions resolve_options(const Arguments& arguments) {
+  cmap::EvaluationOptions options;
+  if (!arguments.preset.empty()) cmap::apply_preset(options, arguments.preset);
+  if (!arguments.config.empty()) cmap::apply_config_file(options, arguments.config);
+  for (const cmap::OptionSpec& spec : cmap::evaluation_option_specs()) {
+    const std::string& text = arguments.option_texts.at(spec.name);
+    if (text.empty()) continue;
+    try {
+      cmap::set_option(options, spec, text);
+    } catch (const cmap::UsageError& error) {
+      throw cmap::UsageError(fmt::format("--{}", error.what()));
+    }
+  }
+  return options;
+}
+
+/// Reads both maps, one on each thread.
+std::pair<cmap::PointCloudFile, cmap::PointCloudFile> read_both(const Arguments& arguments) {
+  std::pair<cmap::PointCloudFile, cmap::PointCloudFile> files;
+  const cmap::ReadOptions with_hash{.sha256 = true};
+  cmap::parallel_tasks({[&] { files.first = cmap::read_point_cloud(arguments.reference, with_hash); },
+                        [&] { files.second = cmap::read_point_cloud(arguments.estimate, with_hash); }});
+  return files;
+}
+
+bool check_requirements(const std::vector<cmap::Requirement>& requirements, const cmap::Evaluation& evaluation) {
+  bool all_hold = true;
+  for (const cmap::Requirement& requirement : requirements) {
+    const cmap::RequirementOutcome outcome = cmap::check(requirement, evaluation);
+    if (outcome.holds) continue;
+    all_hold = false;
+    const std::string found = outcome.value ? fmt::format("{}", *outcome.value) : "no value";
+    fmt::print(stderr, "cmap_eval: requirement not met: {} (found {})\n", requirement.text, found);
+  }
+  return all_hold;
+}
+
+void write_outputs(const Arguments& arguments, const cmap::Evaluation& evaluation, const std::string& report_text) {
+  if (!arguments.estimate_errors.empty()) cmap::write_estimate_errors(evaluation, arguments.estimate_errors);
+  if (!arguments.reference_errors.empty()) cmap::write_reference_errors(evaluation, arguments.reference_errors);
+  if (arguments.output.empty()) return;
+  cmap::OutputFile file(arguments.output);
+  file.write(report_text);
+  file.commit();
+}
+
+ExitCode run(const Arguments& arguments, const std::string& command) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto started = fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now()));
+  const cmap::ThreadLimit limit(arguments.threads);
+  cmap::RunDescription run{command, fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", started), 0.0, {}, cmap::thread_count(),
+                           std::string(cmap::simd_level_name(cmap::simd_level()))};
+  const cmap::EvaluationOptions options = resolve_options(arguments);
+  std::vector<cmap::Requirement> requirements;
+  for (const std::string& text : arguments.requirements) requirements.push_back(cmap::parse_requirement(text, options));
+  const Eigen::Matrix4d T_ref_est =
+      arguments.transform.empty() ? Eigen::Matrix4d::Identity().eval() : cmap::read_transform(arguments.transform);
+
+  const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  cmap::ProgressBar progress(!arguments.quiet);
+  progress.update("read", 0.0);
+  auto [reference, estimate] = read_both(arguments);
+  run.stage_seconds.emplace_back("read", seconds());
+  const cmap::InputDescription reference_description = describe(reference);
+  const cmap::InputDescription estimate_description = describe(estimate);
+  const cmap::Evaluation evaluation =
+      cmap::evaluate(std::move(reference.cloud), std::move(estimate.cloud), options, T_ref_est,
+                     [&](std::string_view stage, double done) { progress.update(stage, done); });
+
+  run.stage_seconds.insert(run.stage_seconds.end(), evaluation.stage_seconds.begin(), evaluation.stage_seconds.end());
+  run.wall_s = seconds();
+  const auto report = cmap::make_report(reference_description, estimate_description, evaluation, run);
+  const std::string report_text = report.dump(2) + "\n";
+  const bool requirements_hold = check_requirements(requirements, evaluation);
+  write_outputs(arguments, evaluation, report_text);
+  if (!arguments.quiet) fmt::print("{}", arguments.format == "json" ? report_text : cmap::format_table(report));
+  return requirements_hold ? ExitCode::kDone : ExitCode::kRequirementFailed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(kDescription, "cmap_eval");
+  app.footer(kExample);
+  app.set_version_flag("--version", fmt::format("cmap_eval {}", cmap::kVersion));
+  Arguments arguments;
+  try {
+    add_options(app, arguments);
+    app.parse(argc, argv);
+    const std::vector<std::string> command(argv, argv + argc);
+    return static_cast<int>(run(arguments, fmt::format("{}", fmt::join(command, " "))));
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);
+    fmt::print(stderr, "cmap_eval: {}\nRun cmap_eval --help for usage.\n", error.what());
+    return static_cast<int>(ExitCode::kUsage);
+  } catch (const cmap::Error& error) {
+    fmt::print(stderr, "cmap_eval: {}\n", error.what());
+    return static_cast<int>(error.exit_code());
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "cmap_eval: internal error: {}\n", error.what());
+    return static_cast<int>(ExitCode::kInternal);
+  }
+}
