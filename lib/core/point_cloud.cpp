@@ -41,7 +41,8 @@ Eigen::Vector3d choose_origin(const Box3d& box) {
     const double extent = box.max[axis] - box.min[axis];
     double unit = 1.0;
     while (unit < 2.0 * extent) unit *= 10.0;
-    origin[axis] = std::round(0.5 * (box.min[axis] + box.max[axis]) / unit) * unit;
+    // Not std::round, whose halves go away from zero: a shifted box must round the same way.
+    origin[axis] = std::floor(0.5 * (box.min[axis] + box.max[axis]) / unit + 0.5) * unit;
   }
   return origin;
 }

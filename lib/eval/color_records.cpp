@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include "cmap/core/parallel.hpp"
 #include "cmap/metrics/color_consistency.hpp"
 #include "cmap/metrics/color_distance.hpp"
 #include "eval/json_number.hpp"
@@ -69,9 +68,8 @@ Json consistency_numbers(const ColorConsistency& c) {
 
 Json consistency_fields(const Findings& f, std::vector<Warning>& warnings) {
   const EvaluationOptions& o = f.options;
-  ColorConsistency estimate, reference;
-  parallel_tasks({[&] { estimate = color_consistency(f.pair.estimate, o.ccs_voxel_m, o.ccs_min_points); },
-                  [&] { reference = color_consistency(f.pair.reference, o.ccs_voxel_m, o.ccs_min_points); }});
+  const ColorConsistency estimate = color_consistency(f.pair.estimate, o.ccs_voxel_m, o.ccs_min_points);
+  const ColorConsistency reference = color_consistency(f.pair.reference, o.ccs_voxel_m, o.ccs_min_points);
   if (estimate.n_voxels == 0) {
     warnings.push_back({"color_consistency_no_voxels",
                         fmt::format("no {} m voxel of the estimate holds {} points: no color consistency", o.ccs_voxel_m,

@@ -18,6 +18,13 @@ struct ColorSums {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double sum_sq = 0.0;
 
+  ColorSums& operator+=(const ColorSums& other) {
+    n += other.n;
+    sum += other.sum;
+    sum_sq += other.sum_sq;
+    return *this;
+  }
+
   /// Trace of the covariance in unit RGB squared.
   double covariance_trace() const {
     const auto count = static_cast<double>(n);
@@ -29,26 +36,21 @@ struct ColorSums {
 
 ColorConsistency color_consistency(const IndexedMap& map, double voxel_m, std::uint64_t min_points) {
   if (!map.has_color()) throw std::invalid_argument("color_consistency: the map needs colors");
-  const VoxelFrame frame(bounds(map.index.points), voxel_m);
-  VoxelMap<ColorSums> voxels;
-  for (std::size_t slot = 0; slot < map.size(); ++slot) {
+  const VoxelFrame frame(map.index.bounds(), voxel_m);
+  const auto add = [&](ColorSums& sums, std::size_t slot, const Eigen::Vector3d&, const VoxelKey&) {
     const Eigen::Vector3d color = map.color(slot);
-    ColorSums& sums = voxels[frame.key(map.index.points.world(slot))];
-    ++sums.n;
-    sums.sum += color;
-    sums.sum_sq += color.squaredNorm();
-  }
+    sums += {1, color, color.squaredNorm()};
+  };
+  const auto trace = [&](const VoxelKey&, const ColorSums& sums) -> std::optional<double> {
+    if (sums.n < min_points) return std::nullopt;
+    return sums.covariance_trace();
+  };
+  const auto voxels = collect_voxels<ColorSums>(map.index.points, frame, add, trace);
 
+  const std::vector<double>& traces = voxels.results;
   ColorConsistency consistency;
-  std::vector<double> traces;
-  for (const auto& [key, sums] : voxels.entries()) {
-    if (sums.n >= min_points) {
-      traces.push_back(sums.covariance_trace());
-    } else {
-      ++consistency.n_voxels_below_min;
-    }
-  }
   consistency.n_voxels = traces.size();
+  consistency.n_voxels_below_min = voxels.n_without_result;
   consistency.mean = std::accumulate(traces.begin(), traces.end(), 0.0) / static_cast<double>(traces.size());
   consistency.median = quantiles(traces, std::array{0.5}).front();
   return consistency;

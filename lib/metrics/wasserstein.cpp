@@ -19,25 +19,36 @@ struct MomentSums {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   Eigen::Matrix3d sum_sq = Eigen::Matrix3d::Zero();
 
+  MomentSums& operator+=(const MomentSums& other) {
+    n += other.n;
+    sum += other.sum;
+    sum_sq += other.sum_sq;
+    return *this;
+  }
+
   Gaussian gaussian() const {
     const Eigen::Vector3d mean = sum / static_cast<double>(n);
     return {n, mean, sum_sq - static_cast<double>(n) * mean * mean.transpose()};
   }
 };
 
-using Moments = VoxelMap<MomentSums>;
+struct VoxelGaussian {
+  VoxelIndex index;
+  Gaussian gaussian;
+};
 
-Moments voxel_moments(const PointBlocks& points, const VoxelFrame& frame) {
-  Moments voxels;
-  for (std::size_t slot = 0; slot < points.size; ++slot) {
-    const Eigen::Vector3d world = points.world(slot);
-    const VoxelKey key = frame.key(world);
+/// The map's voxels with at least min_points points, ordered by index.
+std::vector<VoxelGaussian> voxel_gaussians(const PointBlocks& points, const VoxelFrame& frame, std::uint64_t min_points) {
+  const auto add = [&](MomentSums& sums, std::size_t, const Eigen::Vector3d& world, const VoxelKey& key) {
     const Eigen::Vector3d x = world - frame.center(key);
-    MomentSums& sums = voxels[key];
-    ++sums.n;
-    sums.sum += x;
-    sums.sum_sq += x * x.transpose();
-  }
+    sums += {1, x, x * x.transpose()};
+  };
+  const auto finish = [&](const VoxelKey& key, const MomentSums& sums) -> std::optional<VoxelGaussian> {
+    if (sums.n < min_points) return std::nullopt;
+    return VoxelGaussian{frame.index(key), sums.gaussian()};
+  };
+  std::vector<VoxelGaussian> voxels = collect_voxels<MomentSums>(points, frame, add, finish).results;
+  std::ranges::sort(voxels, {}, &VoxelGaussian::index);
   return voxels;
 }
 
@@ -53,21 +64,17 @@ Eigen::Matrix3d root(const Eigen::Matrix3d& covariance) {
 }  // namespace
 
 std::vector<GaussianPair> gaussian_pairs(const MapPair& pair, double voxel_m, std::uint64_t min_points) {
-  const PointBlocks& reference = pair.reference.index.points;
-  const PointBlocks& estimate = pair.estimate.index.points;
-  const VoxelFrame frame(united(bounds(reference), bounds(estimate)), voxel_m);
-  Moments in_reference, in_estimate;
-  parallel_tasks({[&] { in_reference = voxel_moments(reference, frame); },
-                  [&] { in_estimate = voxel_moments(estimate, frame); }});
-
+  const VoxelFrame frame(united(pair.reference.index.bounds(), pair.estimate.index.bounds()), voxel_m);
   const std::uint64_t enough = std::max<std::uint64_t>(min_points, 2);
+  const auto in_reference = voxel_gaussians(pair.reference.index.points, frame, enough);
+  const auto in_estimate = voxel_gaussians(pair.estimate.index.points, frame, enough);
+
   std::vector<GaussianPair> pairs;
-  for (const auto& [key, sums] : in_reference.entries()) {
-    const MomentSums* other = in_estimate.find(key);
-    if (sums.n < enough || other == nullptr || other->n < enough) continue;
-    pairs.push_back({frame.index(key), sums.gaussian(), other->gaussian()});
+  auto other = in_estimate.begin();
+  for (const auto& [index, gaussian] : in_reference) {
+    while (other != in_estimate.end() && other->index < index) ++other;
+    if (other != in_estimate.end() && other->index == index) pairs.push_back({index, gaussian, other->gaussian});
   }
-  std::ranges::sort(pairs, {}, &GaussianPair::index);
   return pairs;
 }
 

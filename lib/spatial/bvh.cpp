@@ -96,6 +96,15 @@ Bvh::Bvh(PointBlocks sorted_points)
                        })),
       lowest_index(lowest_indices(points)) {}
 
+Box3d Bvh::bounds() const {
+  const BoxNode& root = boxes.back().front();
+  const Extent x = extent_of(root.min_x, root.max_x);
+  const Extent y = extent_of(root.min_y, root.max_y);
+  const Extent z = extent_of(root.min_z, root.max_z);
+  return {points.origin + Eigen::Vector3f(x.min, y.min, z.min).cast<double>(),
+          points.origin + Eigen::Vector3f(x.max, y.max, z.max).cast<double>()};
+}
+
 BoxLevels color_boxes(const Array<ColorBlock>& colors) {
   return box_levels(colors.size(), [&](BoxNode& node, std::size_t c, std::size_t block) {
     const ColorBlock& color = colors[block];

@@ -60,8 +60,7 @@ TEST(DeltaE2000, IsSymmetric) {
 
 TEST(DeltaE2000, OppositeHuesCountAsNotAbove180Degrees) {
   // The formula jumps at 180 degrees; rounding must not choose the side, as pairs 10 and 14 of the table have it. So
-  // nothing happens where lab2 turns clockwise, to less than 180 degrees counterclockwise of lab1, by 1e-9: that moves
-  // delta E by less than 28 * 2 * 1e-9, the other side of the jump by 0.04 and more.
+  // nothing may happen where lab2 turns by 1e-9 to an angle below 180 degrees: that moves it by 3e-8 at most.
   for (int a = -40; a <= 40; ++a) {
     for (int b = 1; b <= 40; ++b) {
       const Vector3d lab1(50.0, 0.3 * a, 0.7 * b), lab2(60.0, -lab1.y(), -lab1.z());

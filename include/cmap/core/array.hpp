@@ -2,14 +2,17 @@
 
 #include <cstddef>
 #include <memory>
+#include <new>
 #include <utility>
 #include <vector>
 
 namespace cmap {
 
-/// Memory for large arrays: 64-byte aligned, in huge pages from 4 MiB on. Throws std::bad_alloc.
+/// Memory for large arrays: 64-byte aligned; from 4 MiB on in huge pages, and kept when freed, for the next array of
+/// about its size: the first touch of fresh memory costs more than most passes over it. Idle blocks go back to the
+/// system before the process would grow. Thread-safe. Throws std::bad_alloc.
 void* allocate_large(std::size_t bytes);
-void free_large(void* memory) noexcept;
+void free_large(void* memory, std::size_t bytes) noexcept;
 
 /// Allocator of Array: aligned memory whose elements are left uninitialized by `resize`, so that a large array is
 /// touched once, by whoever fills it.
@@ -24,7 +27,7 @@ struct LargeAllocator {
     if (n > static_cast<std::size_t>(-1) / sizeof(T)) throw std::bad_array_new_length();
     return static_cast<T*>(allocate_large(n * sizeof(T)));
   }
-  void deallocate(T* memory, std::size_t) noexcept { free_large(memory); }
+  void deallocate(T* memory, std::size_t n) noexcept { free_large(memory, n * sizeof(T)); }
 
   template <class U>
   void construct(U* place) noexcept(noexcept(::new (static_cast<void*>(place)) U)) {

@@ -31,9 +31,11 @@ struct PointCloudFile {
 };
 
 /// Reads a point cloud of any format of FORMATS (PLY, PCD, LAS, text), recognized by content first, extension second.
-/// Non-finite points are dropped and counted; colors stay as stored; the origin is choose_origin() of the bounds.
-/// Thread-safe. Throws InputError naming file, place (line, byte or field) and reason: missing or unreadable file,
-/// unknown format, malformed or truncated content, a coordinate beyond kMaxCoordinate_m, no finite point.
+/// Points that are not finite, in position or in a float color, are dropped and counted; colors stay as stored; the
+/// origin is choose_origin() of the bounds. Float files near zero keep their floats exactly; a pipe is read into
+/// memory. Thread-safe. Throws InputError naming file, place (line, byte or field) and reason: missing or unreadable
+/// file, unknown format, malformed or truncated content, a coordinate beyond kMaxCoordinate_m, a float color outside
+/// [0,1], no finite point.
 PointCloudFile read_point_cloud(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// A named value per point, written as a float property of its own.

@@ -26,6 +26,9 @@ using BoxLevels = std::vector<Array<BoxNode>>;
 struct Bvh {
   explicit Bvh(PointBlocks sorted_points);
 
+  /// Bounds of the points, world frame.
+  Box3d bounds() const;
+
   PointBlocks points;
   BoxLevels boxes;
   /// By level like `boxes`: lets searches prune among equally near points.
