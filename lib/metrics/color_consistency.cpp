@@ -18,13 +18,6 @@ struct ColorSums {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double sum_sq = 0.0;
 
-  ColorSums& operator+=(const ColorSums& other) {
-    n += other.n;
-    sum += other.sum;
-    sum_sq += other.sum_sq;
-    return *this;
-  }
-
   /// Trace of the covariance in unit RGB squared.
   double covariance_trace() const {
     const auto count = static_cast<double>(n);
@@ -39,7 +32,9 @@ ColorConsistency color_consistency(const IndexedMap& map, double voxel_m, std::u
   const VoxelFrame frame(map.index.bounds(), voxel_m);
   const auto add = [&](ColorSums& sums, std::size_t slot, const Eigen::Vector3d&, const VoxelKey&) {
     const Eigen::Vector3d color = map.color(slot);
-    sums += {1, color, color.squaredNorm()};
+    ++sums.n;
+    sums.sum += color;
+    sums.sum_sq += color.squaredNorm();
   };
   const auto trace = [&](const VoxelKey&, const ColorSums& sums) -> std::optional<double> {
     if (sums.n < min_points) return std::nullopt;

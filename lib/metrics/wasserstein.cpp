@@ -19,13 +19,6 @@ struct MomentSums {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   Eigen::Matrix3d sum_sq = Eigen::Matrix3d::Zero();
 
-  MomentSums& operator+=(const MomentSums& other) {
-    n += other.n;
-    sum += other.sum;
-    sum_sq += other.sum_sq;
-    return *this;
-  }
-
   Gaussian gaussian() const {
     const Eigen::Vector3d mean = sum / static_cast<double>(n);
     return {n, mean, sum_sq - static_cast<double>(n) * mean * mean.transpose()};
@@ -41,7 +34,9 @@ struct VoxelGaussian {
 std::vector<VoxelGaussian> voxel_gaussians(const PointBlocks& points, const VoxelFrame& frame, std::uint64_t min_points) {
   const auto add = [&](MomentSums& sums, std::size_t, const Eigen::Vector3d& world, const VoxelKey& key) {
     const Eigen::Vector3d x = world - frame.center(key);
-    sums += {1, x, x * x.transpose()};
+    ++sums.n;
+    sums.sum += x;
+    sums.sum_sq += x * x.transpose();
   };
   const auto finish = [&](const VoxelKey& key, const MomentSums& sums) -> std::optional<VoxelGaussian> {
     if (sums.n < min_points) return std::nullopt;

@@ -169,7 +169,9 @@ TEST(DistanceStats, AppendedEstimatePointsNeverLowerCompleteness) {
     clouds.estimate = test::appended(clouds.estimate, more);
     const DistanceStats after = stats_of(clouds.pair().nearest_in_estimate.sq_dist, thresholds);
     for (std::size_t t = 0; t < thresholds.size(); ++t) EXPECT_GE(after.share_within(t), before.share_within(t));
-    if (step > 0) EXPECT_GT(after.share_within(1), before.share_within(1));
+    if (step > 0) {
+      EXPECT_GT(after.share_within(1), before.share_within(1));
+    }
     before = after;
   }
 }

@@ -1,0 +1,37 @@
+#include "metrics/voxels.hpp"
+
+#include <tuple>
+
+namespace cmap {
+namespace {
+
+constexpr int kCellBits = 5;  // 32 voxels an axis: a surface's sums fit the second-level cache
+constexpr std::size_t kChunk = std::size_t{1} << 16;
+
+VoxelKey cell_of(const VoxelKey& key) { return {key.x >> kCellBits, key.y >> kCellBits, key.z >> kCellBits}; }
+
+std::vector<CellRun> runs_of_chunk(const PointBlocks& points, const VoxelFrame& frame, std::size_t begin,
+                                   std::size_t end) {
+  std::vector<CellRun> runs;
+  for (std::size_t slot = begin; slot < end; ++slot) {
+    const VoxelKey cell = cell_of(frame.key(points.world(slot)));
+    if (runs.empty() || runs.back().cell != cell) runs.push_back({cell, slot, slot});
+    runs.back().end = slot + 1;
+  }
+  return runs;
+}
+
+}  // namespace
+
+std::vector<CellRun> cell_runs(const PointBlocks& points, const VoxelFrame& frame) {
+  std::vector<std::vector<CellRun>> by_chunk((points.size + kChunk - 1) / kChunk);
+  parallel_chunks(points.size, kChunk, [&](std::size_t begin, std::size_t end) {
+    by_chunk[begin / kChunk] = runs_of_chunk(points, frame, begin, end);
+  });
+  std::vector<CellRun> runs;
+  for (const auto& chunk : by_chunk) runs.insert(runs.end(), chunk.begin(), chunk.end());
+  std::ranges::sort(runs, {}, [](const CellRun& r) { return std::tuple(r.cell.x, r.cell.y, r.cell.z, r.begin); });
+  return runs;
+}
+
+}  // namespace cmap

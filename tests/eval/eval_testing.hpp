@@ -1,0 +1,68 @@
+#pragma once
+
+// Small maps and helpers for the tests of evaluations and reports.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cmap/core/error.hpp"
+#include "cmap/eval/evaluation.hpp"
+#include "spatial/clouds.hpp"
+
+namespace cmap::test {
+
+/// What an action says when it refuses with this kind of error; empty if it does not refuse.
+template <class Error, class Action>
+std::string refusal_of(Action&& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+/// A map of given points and 8-bit colors.
+inline PointCloud small_map(const std::vector<Eigen::Vector3f>& positions, const std::vector<Rgb8>& colors = {}) {
+  PointCloud map;
+  map.positions.assign(positions.begin(), positions.end());
+  if (!colors.empty()) map.colors = Array<Rgb8>(colors.begin(), colors.end());
+  return map;
+}
+
+/// A gray map.
+inline PointCloud gray_map(const std::vector<Eigen::Vector3f>& positions) {
+  return small_map(positions, std::vector<Rgb8>(positions.size(), Rgb8{128, 128, 128}));
+}
+
+/// A painted surface.
+inline PointCloud painted_sheet(std::size_t n, unsigned seed) {
+  PointCloud map = sheet_cloud(n, seed);
+  paint(map, seed + 7);
+  return map;
+}
+
+inline std::vector<std::string> warning_ids(const std::vector<Warning>& warnings) {
+  std::vector<std::string> ids;
+  for (const Warning& warning : warnings) ids.push_back(warning.id);
+  return ids;
+}
+
+inline EvaluationOptions options_for(std::vector<std::string> metrics) {
+  EvaluationOptions options;
+  options.metrics = std::move(metrics);
+  return options;
+}
+
+inline std::filesystem::path source_path(const char* relative) {
+  const char* source = std::getenv("CMAP_SOURCE_DIR");
+  if (source == nullptr) throw std::runtime_error("run by CTest, which sets CMAP_SOURCE_DIR");
+  return std::filesystem::path(source) / relative;
+}
+
+}  // namespace cmap::test

@@ -1,0 +1,122 @@
+#include "cmap/eval/metric_catalog.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include "eval/eval_testing.hpp"
+
+namespace cmap {
+namespace {
+
+using test::options_for;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+using Ids = std::set<std::string_view>;
+
+const Ids kColor{"color_distance", "color_fidelity", "local_color_recall", "color_consistency"};
+const Ids kBeyond{"delta_e", "color_distance_by_range", "color_distance_exposure_free", "color_psnr"};
+const Ids kGeometry{"chamfer", "accuracy", "fitness", "completeness", "f_score", "overlap", "hausdorff", "rmse"};
+const Ids kDistribution{"average_wasserstein", "spatial_consistency"};
+const Ids kEntropy{"mean_map_entropy"};
+
+Ids all_of(std::initializer_list<Ids> groups) {
+  Ids all;
+  for (const Ids& group : groups) all.insert(group.begin(), group.end());
+  return all;
+}
+
+Ids ids_of(std::vector<std::string> metrics) { return select_metrics(options_for(std::move(metrics))).ids; }
+
+TEST(MetricCatalog, HoldsTheMetricsOfTheDefinitions) {
+  Ids ids;
+  for (const MetricInfo& metric : metric_catalog()) ids.insert(metric.id);
+  EXPECT_EQ(ids, all_of({kColor, kBeyond, kGeometry, kDistribution, kEntropy}));
+  EXPECT_EQ(ids.size(), metric_catalog().size()) << "no id twice";
+}
+
+struct Fixed {
+  const char *id, *symbol, *unit, *better;
+};
+
+TEST(MetricCatalog, SymbolsUnitsAndDirectionsAreThoseOfTheDefinitions) {
+  for (const Fixed& fixed : {Fixed{"color_distance", "CD", "unit RGB", "lower"}, Fixed{"color_fidelity", "CF", "dB", "higher"},
+                             Fixed{"local_color_recall", "LCR", "1", "higher"},
+                             Fixed{"color_consistency", "CCS", "unit RGB^2", "lower"}, Fixed{"chamfer", "CD#", "m", "lower"},
+                             Fixed{"accuracy", "AC", "m", "lower"}, Fixed{"f_score", "F", "1", "higher"},
+                             Fixed{"overlap", "Overlap", "1", "higher"}, Fixed{"rmse", "RMSE", "m", "lower"},
+                             Fixed{"average_wasserstein", "AWD", "m", "lower"},
+                             Fixed{"spatial_consistency", "SCS", "1", "lower"},
+                             Fixed{"mean_map_entropy", "MME", "nats", "lower"}}) {
+    SCOPED_TRACE(fixed.id);
+    const MetricInfo* metric = find_metric(fixed.id);
+    ASSERT_NE(metric, nullptr);
+    EXPECT_EQ(metric->symbol, fixed.symbol);
+    EXPECT_EQ(metric->unit, fixed.unit);
+    EXPECT_EQ(metric->better, fixed.better);
+    EXPECT_EQ(find_metric(fixed.symbol), metric);
+  }
+}
+
+TEST(MetricCatalog, OnlyLevelsOfDistanceHaveThresholds) {
+  for (const MetricInfo& metric : metric_catalog()) {
+    const bool has_levels = Ids{"accuracy", "fitness", "completeness", "f_score"}.contains(metric.id);
+    EXPECT_EQ(metric.per_threshold, has_levels) << metric.id;
+    EXPECT_EQ(metric.needs_color, metric.group == "color" || metric.group == "color+") << metric.id;
+  }
+}
+
+std::string in_case(std::string_view text, int (*convert)(int)) {
+  std::string result(text);
+  for (char& c : result) c = static_cast<char>(convert(static_cast<unsigned char>(c)));
+  return result;
+}
+
+TEST(FindMetric, TakesIdsAndSymbolsInAnyCase) {
+  for (const MetricInfo& metric : metric_catalog()) {
+    for (std::string_view name : {metric.id, metric.symbol}) {
+      if (name.empty()) continue;
+      EXPECT_EQ(find_metric(in_case(name, std::tolower)), &metric) << name;
+      EXPECT_EQ(find_metric(in_case(name, std::toupper)), &metric) << name;
+    }
+  }
+}
+
+TEST(FindMetric, FindsNothingElse) {
+  for (const char* name : {"", "colour_distance", "LCR ", "CD##", "color", "chamfe"}) EXPECT_EQ(find_metric(name), nullptr) << name;
+}
+
+TEST(SelectMetrics, DefaultIsColorGeometryAndDistribution) {
+  const MetricSelection selection = select_metrics(EvaluationOptions{});
+  EXPECT_EQ(selection.ids, all_of({kColor, kGeometry, kDistribution}));
+  EXPECT_FALSE(selection.color_is_required);
+}
+
+TEST(SelectMetrics, TakesGroupsAndIds) {
+  EXPECT_EQ(ids_of({"color"}), kColor);
+  EXPECT_EQ(ids_of({"color+"}), all_of({kColor, kBeyond}));
+  EXPECT_EQ(ids_of({"geometry"}), kGeometry);
+  EXPECT_EQ(ids_of({"distribution"}), kDistribution);
+  EXPECT_EQ(ids_of({"mme"}), kEntropy);
+  EXPECT_EQ(ids_of({"all"}), all_of({kColor, kBeyond, kGeometry, kDistribution, kEntropy}));
+  EXPECT_EQ(ids_of({"delta_e", "chamfer"}), (Ids{"chamfer", "delta_e"}));
+  EXPECT_EQ(ids_of({"mme", "mean_map_entropy"}), kEntropy);
+}
+
+TEST(SelectMetrics, ColorIsRequiredWhereItIsNamed) {
+  const auto required = [](std::vector<std::string> metrics) {
+    return select_metrics(options_for(std::move(metrics))).color_is_required;
+  };
+  for (const char* name : {"color", "color+", "local_color_recall", "delta_e"}) EXPECT_TRUE(required({name})) << name;
+  for (const char* name : {"all", "geometry", "mme", "chamfer"}) EXPECT_FALSE(required({name})) << name;
+  EXPECT_TRUE(required({"all", "color"}));
+}
+
+TEST(SelectMetrics, RefusesAnUnknownName) {
+  EXPECT_THAT(test::refusal_of<UsageError>([] { ids_of({"geometry", "lidar"}); }),
+              AllOf(HasSubstr("\"lidar\" is unknown"), HasSubstr("distribution, mme, all"), HasSubstr("color_fidelity")));
+}
+
+}  // namespace
+}  // namespace cmap

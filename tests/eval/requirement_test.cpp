@@ -1,0 +1,124 @@
+#include "cmap/eval/requirement.hpp"
+
+#include "eval/eval_testing.hpp"
+
+namespace cmap {
+namespace {
+
+using test::options_for;
+using test::refusal_of;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+/// A record as evaluations make them.
+Evaluation evaluation() {
+  using Json = nlohmann::ordered_json;
+  Evaluation result{{}, Eigen::Matrix4d::Identity(), 0.0, 0.0, {}, {}, {}, {},
+                    {IndexedMap(test::gray_map({{0, 0, 0}})), IndexedMap(test::gray_map({{0, 0, 0}})), {}, {}}, {}};
+  const auto add = [&](const char* id, const char* fields) {
+    result.metrics.push_back({find_metric(id), Json::parse(fields)});
+  };
+  add("local_color_recall", R"({"value": 0.25, "coverage": 0.5, "conditional": null})");
+  add("color_fidelity", R"({"value": null, "parameters": {}})");
+  add("chamfer", R"({"value": 0.125, "variants": {"l1_mean": 0.0625}, "note": "text"})");
+  add("accuracy", R"({"per_threshold": [{"threshold_m": 0.2, "value": 0.05, "median": 0.04},
+                                        {"threshold_m": 0.1, "value": null, "median": null}]})");
+  add("color_distance_by_range", R"({"per_range": [{"lo_m": 0.0, "hi_m": 0.05, "value": 0.01}]})");
+  return result;
+}
+
+EvaluationOptions all_metrics() {
+  EvaluationOptions options = options_for({"all"});
+  options.thresholds_m = {0.2, 0.1};
+  return options;
+}
+
+RequirementOutcome outcome(const std::string& text) { return check(parse_requirement(text, all_metrics()), evaluation()); }
+
+std::string refusal(const std::string& text) { return refusal_of<UsageError>([&] { outcome(text); }); }
+
+TEST(Requirement, EveryComparisonDecidesAtItsBound) {
+  for (const char* holds : {"LCR>=0.25", "LCR<=0.25", "LCR==0.25", "LCR>0.2", "LCR<0.3"}) EXPECT_TRUE(outcome(holds).holds) << holds;
+  for (const char* fails : {"LCR>0.25", "LCR<0.25", "LCR==0.2", "LCR>=0.3", "LCR<=0.2"}) EXPECT_FALSE(outcome(fails).holds) << fails;
+  EXPECT_EQ(outcome("LCR>=0.3").value, 0.25);
+}
+
+TEST(Requirement, TakesIdsAndSymbolsInAnyCase) {
+  for (const char* text : {"local_color_recall>=0.25", "Local_Color_Recall>=0.25", "lcr>=0.25", "CD#<=0.125", "cd#<=0.125",
+                           "chamfer<=0.125", "CHAMFER<=0.125", "AC@0.2<=0.05", "ac@0.2<=0.05"}) {
+    EXPECT_TRUE(outcome(text).holds) << text;
+  }
+}
+
+TEST(Requirement, TakesBlanksAndEveryNotationOfANumber) {
+  for (const char* text : {" LCR >= 2.5e-1 ", "LCR>=+0.25", "LCR>=-1", "LCR>=.25", "accuracy@2e-1<=0.05", "accuracy@0.20<=0.05"}) {
+    EXPECT_TRUE(outcome(text).holds) << text;
+  }
+}
+
+TEST(Requirement, SelectsOneThreshold) {
+  const Requirement requirement = parse_requirement("accuracy@0.2<=0.06", all_metrics());
+  EXPECT_EQ(requirement.metric->id, "accuracy");
+  EXPECT_EQ(requirement.threshold_m, 0.2);
+  EXPECT_EQ(requirement.bound, 0.06);
+  EXPECT_TRUE(check(requirement, evaluation()).holds);
+}
+
+TEST(Requirement, SelectsAFieldByItsPath) {
+  EXPECT_EQ(outcome("LCR.coverage>=0.5").value, 0.5);
+  EXPECT_EQ(outcome("chamfer.variants.l1_mean<=1").value, 0.0625);
+  EXPECT_EQ(outcome("accuracy.median@0.2<=1").value, 0.04);
+  EXPECT_EQ(outcome("color_distance_by_range.per_range.0.value<=1").value, 0.01);
+}
+
+TEST(Requirement, ANullFailsWhateverTheComparison) {
+  for (const char* text : {"LCR.conditional>=0", "LCR.conditional<=1", "CF>=0", "CF<=1e9", "accuracy@0.1<=1", "CF==0"}) {
+    EXPECT_FALSE(outcome(text).holds) << text;
+    EXPECT_EQ(outcome(text).value, std::nullopt) << text;
+  }
+  EXPECT_FALSE(outcome("color_fidelity.whatever>=0").holds) << "a metric without a value has no other fields";
+}
+
+TEST(Requirement, RefusesWhatIsNoCondition) {
+  for (const char* text : {"", "LCR", "LCR>=", ">=0.2", "LCR=0.2", "LCR=>0.2", "LCR>=0.2 m", "LCR>=0.2,CD<=1", "LCR!=1",
+                           "LCR>=abc", "LCR..x>=1", "accuracy@<=1"}) {
+    EXPECT_THAT(refusal(text), AllOf(StartsWith("require \"" + std::string(text) + "\": "), HasSubstr("expected METRIC"))) << text;
+  }
+}
+
+TEST(Requirement, RefusesWhatIsNoNumber) {
+  for (const char* text : {"LCR>=1.2.3", "LCR>=e", "LCR>=--1", "accuracy@1.1.1<=1"}) {
+    EXPECT_THAT(refusal(text), HasSubstr("is not a number")) << text;
+  }
+}
+
+TEST(Requirement, RefusesABoundThatIsNotFinite) {
+  EXPECT_THAT(refusal("chamfer<=1e999"), HasSubstr("\"1e999\" is not a number")) << "it would hold for every map";
+}
+
+TEST(Requirement, RefusesAnUnknownMetric) {
+  EXPECT_THAT(refusal("lidar>=1"), HasSubstr("unknown metric \"lidar\""));
+}
+
+TEST(Requirement, RefusesAMetricThatIsNotComputed) {
+  const auto parse = [] { parse_requirement("LCR>=0.2", options_for({"geometry"})); };
+  EXPECT_THAT(refusal_of<UsageError>(parse), AllOf(HasSubstr("local_color_recall is not computed"), HasSubstr("--metrics")));
+}
+
+TEST(Requirement, RefusesAWrongThreshold) {
+  EXPECT_THAT(refusal("accuracy<=1"), HasSubstr("one value for each threshold: write accuracy@0.2"));
+  EXPECT_THAT(refusal("accuracy@0.3<=1"), HasSubstr("0.3 m is not among the thresholds"));
+  EXPECT_THAT(refusal("chamfer@0.2<=1"), HasSubstr("chamfer has no thresholds"));
+}
+
+TEST(Requirement, RefusesAnUnknownField) {
+  EXPECT_THAT(refusal("LCR.covrage>=0.5"), HasSubstr("local_color_recall has no field covrage"));
+  EXPECT_THAT(refusal("accuracy.mode@0.2<=1"), HasSubstr("accuracy has no field mode"));
+  EXPECT_THAT(refusal("chamfer.variants<=1"), HasSubstr("variants is not a number"));
+  EXPECT_THAT(refusal("chamfer.note<=1"), HasSubstr("note is not a number"));
+  EXPECT_THAT(refusal("color_distance_by_range<=1"), HasSubstr("color_distance_by_range has no field value"));
+}
+
+}  // namespace
+}  // namespace cmap

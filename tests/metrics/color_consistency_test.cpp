@@ -1,0 +1,161 @@
+#include "cmap/metrics/color_consistency.hpp"
+
+#include <cmath>
+#include <map>
+
+#include "cmap/core/error.hpp"
+#include "metrics/map_pairs.hpp"
+
+namespace cmap {
+namespace {
+
+ColorConsistency consistency(const PointCloud& cloud, double voxel_m, std::uint64_t min_points = 2) {
+  return color_consistency(IndexedMap(cloud), voxel_m, min_points);
+}
+
+PointCloud sheet() { return test::two_sheets().reference; }
+
+constexpr Rgb8 kBlack{0, 0, 0};
+constexpr Rgb8 kWhite{255, 255, 255};
+
+/// Mean trace of the covariance by its definition: the mean first, then the squares about it.
+double by_definition(const PointCloud& cloud, double voxel_m, std::size_t min_points) {
+  std::map<std::array<double, 3>, std::vector<Eigen::Vector3d>> voxels;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3d v = (cloud.world(i) / voxel_m).array().floor();
+    voxels[{v.x(), v.y(), v.z()}].push_back(test::unit_color(cloud, i));
+  }
+  double sum = 0.0;
+  std::size_t n_voxels = 0;
+  for (const auto& [index, colors] : voxels) {
+    if (colors.size() < min_points) continue;
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const auto& c : colors) mean += c / static_cast<double>(colors.size());
+    double trace = 0.0;
+    for (const auto& c : colors) trace += (c - mean).squaredNorm() / static_cast<double>(colors.size() - 1);
+    sum += trace;
+    ++n_voxels;
+  }
+  return sum / static_cast<double>(n_voxels);
+}
+
+void expect_same(const ColorConsistency& found, const ColorConsistency& expected) {
+  EXPECT_EQ(found.n_voxels, expected.n_voxels);
+  EXPECT_EQ(found.n_voxels_below_min, expected.n_voxels_below_min);
+  EXPECT_NEAR_RELATIVE(found.mean, expected.mean, test::kSummation);
+  EXPECT_NEAR_RELATIVE(found.median, expected.median, test::kSummation);
+}
+
+TEST(ColorConsistency, HalfBlackHalfWhite) {
+  for (std::size_t n : {2, 4, 6, 100, 4096}) {
+    PointCloud cloud = test::uniform_cloud(n, 1, 0.9f);
+    Array<Rgb8> colors(n, kBlack);
+    std::fill(colors.begin() + static_cast<long>(n / 2), colors.end(), kWhite);
+    cloud.colors = colors;
+    const ColorConsistency found = consistency(cloud, 1.0);
+    EXPECT_EQ(found.n_voxels, 1U);
+    const auto count = static_cast<double>(n);
+    EXPECT_DOUBLE_EQ(found.mean, 3.0 * count / (4.0 * (count - 1.0)));
+    EXPECT_EQ(found.median, found.mean);
+  }
+}
+
+TEST(ColorConsistency, HandComputedOverThreeVoxels) {
+  // Traces 1.5, 0 and 0.02 (red 0 and 51: variance 0.04 / 2); a single point below.
+  const PointCloud cloud = test::cloud_of(
+      {{0.1f, 0, 0}, {0.2f, 0, 0}, {1.1f, 0, 0}, {1.2f, 0, 0}, {2.1f, 0, 0}, {2.2f, 0, 0}, {9, 9, 9}},
+      {kBlack, kWhite, {7, 8, 9}, {7, 8, 9}, {0, 3, 3}, {51, 3, 3}, kWhite});
+  const ColorConsistency found = consistency(cloud, 1.0);
+  EXPECT_EQ(found.n_voxels, 3U);
+  EXPECT_EQ(found.n_voxels_below_min, 1U);
+  EXPECT_DOUBLE_EQ(found.mean, 1.52 / 3.0);
+  EXPECT_DOUBLE_EQ(found.median, 0.02);
+}
+
+TEST(ColorConsistency, VoxelsAreAnchoredAtTheWorldsOriginAndHoldTheirLowerBorder) {
+  // -0.1 and 0.1 are apart, 1.0 belongs to the upper voxel.
+  const std::vector<Eigen::Vector3f> positions{{-0.1f, 0, 0}, {0.1f, 0, 0}, {1.0f, 0, 0}, {1.9f, 0, 0}};
+  PointCloud cloud = test::cloud_of(positions, {kBlack, kWhite, kBlack, kWhite});
+  EXPECT_EQ(consistency(cloud, 1.0).n_voxels, 1U);
+  EXPECT_EQ(consistency(cloud, 1.0).n_voxels_below_min, 2U);
+  // The same points from another origin: the world counts, not the offsets.
+  for (Eigen::Vector3f& p : cloud.positions) p.x() += 0.5f;
+  cloud.origin.x() = -0.5;
+  EXPECT_EQ(consistency(cloud, 1.0).n_voxels_below_min, 2U);
+}
+
+TEST(ColorConsistency, MinPointsLeavesThinVoxelsOut) {
+  const PointCloud cloud = sheet();
+  ColorConsistency before = consistency(cloud, 0.5, 2);
+  const std::uint64_t all = before.n_voxels + before.n_voxels_below_min;
+  for (std::uint64_t min_points : {3, 4, 6}) {
+    const ColorConsistency after = consistency(cloud, 0.5, min_points);
+    EXPECT_LT(after.n_voxels, before.n_voxels);
+    EXPECT_EQ(after.n_voxels + after.n_voxels_below_min, all);
+    EXPECT_NEAR_RELATIVE(after.mean, by_definition(cloud, 0.5, min_points), test::kSummation);
+    before = after;
+  }
+}
+
+TEST(ColorConsistency, NoVoxelIsMissing) {
+  const ColorConsistency none = consistency(sheet(), 100.0, 5000);
+  EXPECT_EQ(none.n_voxels, 0U);
+  EXPECT_TRUE(std::isnan(none.mean));
+  EXPECT_TRUE(std::isnan(none.median));
+}
+
+TEST(ColorConsistency, EqualsTheDefinition) {
+  for (double voxel_m : {0.2, 0.25, 0.7, 4.0, 300.0}) {
+    SCOPED_TRACE(voxel_m);
+    EXPECT_NEAR_RELATIVE(consistency(sheet(), voxel_m).mean, by_definition(sheet(), voxel_m, 2), test::kSummation);
+  }
+}
+
+TEST(ColorConsistency, OneColorIsPerfectlyConsistent) {
+  PointCloud cloud = test::sheet_cloud(2000, 1);
+  cloud.colors = Array<Rgb8>(2000, Rgb8{255, 253, 251});
+  EXPECT_EQ(consistency(cloud, 2.0).mean, 0.0);
+  cloud.colors = Array<RgbF>(2000, RgbF{0.1f, 0.7f, 0.3f});
+  // Sums of squares below 1e5 a point are rounded; never below 0.
+  EXPECT_GE(consistency(cloud, 2.0).mean, 0.0);
+  EXPECT_LT(consistency(cloud, 2.0).mean, 1e-14);
+}
+
+TEST(ColorConsistency, DoesNotChangeWithAColorShift) {
+  PointCloud cloud = test::sheet_cloud(2000, 1);
+  Array<Rgb8> colors(2000);
+  for (std::size_t i = 0; i < 2000; ++i) colors[i] = {static_cast<std::uint8_t>(i % 100), static_cast<std::uint8_t>(i % 41), 0};
+  cloud.colors = colors;
+  const ColorConsistency expected = consistency(cloud, 1.0);
+  for (Rgb8& c : colors) c = {static_cast<std::uint8_t>(c[0] + 100), static_cast<std::uint8_t>(c[1] + 100), 100};
+  cloud.colors = colors;
+  expect_same(consistency(cloud, 1.0), expected);
+}
+
+TEST(ColorConsistency, IsInvariantUnderPermutation) {
+  expect_same(consistency(test::permuted(sheet(), 9), 0.5), consistency(sheet(), 0.5));
+}
+
+TEST(ColorConsistency, IsInvariantUnderShiftsByWholeVoxels) {
+  for (double voxel_m : {0.25, 4.0}) {
+    PointCloud cloud = sheet();
+    const ColorConsistency expected = consistency(cloud, voxel_m);
+    cloud.origin = {1e6, -1e6, 1e6};
+    expect_same(consistency(cloud, voxel_m), expected);
+    expect_same(consistency(transformed(sheet(), test::translation({-1e6, 1e6, 4.0})), voxel_m), expected);
+    cloud.origin = {0.3 * voxel_m, 0, 0};  // not whole: other voxels
+    EXPECT_NE(consistency(cloud, voxel_m).mean, expected.mean);
+  }
+}
+
+TEST(ColorConsistency, ScalesWithMapAndVoxel) {
+  expect_same(consistency(transformed(sheet(), test::scaling(8.0)), 4.0), consistency(sheet(), 0.5));
+}
+
+TEST(ColorConsistency, RefusesWhatItCannotDo) {
+  EXPECT_THROW(consistency(sheet(), 1e-9), UsageError);  // 2e10 voxels along an axis
+  EXPECT_THROW(consistency(test::sheet_cloud(10, 1), 1.0), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace cmap

@@ -1,0 +1,207 @@
+#include "cmap/metrics/local_color_recall.hpp"
+
+#include <cmath>
+
+#include "metrics/map_pairs.hpp"
+
+namespace cmap {
+namespace {
+
+LocalColorRecall recall(const test::Clouds& clouds, double tau, double radius_m, bool curve = false) {
+  return local_color_recall(clouds.pair(), {tau, radius_m, curve});
+}
+
+/// One black reference point and one estimated point of the given color in the same place.
+LocalColorRecall recall_of_color(Rgb8 color, double tau) {
+  return recall({test::cloud_of({{0, 0, 0}}, {{0, 0, 0}}), test::cloud_of({{0, 0, 0}}, {color})}, tau, 0.5);
+}
+
+/// Brute force: classes in the reference's order.
+Array<RecallClass> classes_by_definition(const test::Clouds& clouds, double tau, double radius_m) {
+  Array<RecallClass> classes(clouds.reference.size(), RecallClass::kNotCovered);
+  for (std::size_t j = 0; j < clouds.reference.size(); ++j) {
+    for (std::size_t i = 0; i < clouds.estimate.size(); ++i) {
+      if ((clouds.reference.world(j) - clouds.estimate.world(i)).norm() > radius_m) continue;
+      const double color = (test::unit_color(clouds.reference, j) - test::unit_color(clouds.estimate, i)).norm();
+      classes[j] = std::max(classes[j], color <= 3.0 * tau ? RecallClass::kRecalled : RecallClass::kWrongColor);
+    }
+  }
+  return classes;
+}
+
+void expect_same(const LocalColorRecall& found, const LocalColorRecall& expected) {
+  EXPECT_EQ(found.n_reference, expected.n_reference);
+  EXPECT_EQ(found.n_covered, expected.n_covered);
+  EXPECT_EQ(found.n_recalled, expected.n_recalled);
+}
+
+TEST(LocalColorRecall, HandComputed) {
+  // Covered and right, covered and wrong, not covered, covered and right by the farther of two.
+  const PointCloud reference = test::cloud_of({{0, 0, 0}, {10, 0, 0}, {20, 0, 0}, {30, 0, 0}},
+                                              {{10, 10, 10}, {10, 10, 10}, {10, 10, 10}, {10, 10, 10}});
+  const PointCloud estimate = test::cloud_of({{0.25f, 0, 0}, {10, 0, 0}, {21, 0, 0}, {30.1f, 0, 0}, {30.4f, 0, 0}},
+                                             {{20, 20, 20}, {255, 255, 255}, {10, 10, 10}, {255, 0, 0}, {10, 0, 10}});
+  const test::Clouds clouds{reference, estimate};
+  const MapPair pair = clouds.pair();
+  const LocalColorRecall found = local_color_recall(pair, {});
+  EXPECT_EQ(found.n_reference, 4U);
+  EXPECT_EQ(found.n_covered, 3U);
+  EXPECT_EQ(found.n_recalled, 2U);
+  EXPECT_EQ(found.value(), 0.5);
+  EXPECT_EQ(found.coverage(), 0.75);
+  EXPECT_DOUBLE_EQ(found.conditional(), 2.0 / 3.0);
+  EXPECT_EQ(in_original_order(pair.reference.index.points, found.classes),
+            (Array<RecallClass>{RecallClass::kRecalled, RecallClass::kWrongColor, RecallClass::kNotCovered,
+                                RecallClass::kRecalled}));
+  EXPECT_TRUE(found.curve.tau.empty());
+}
+
+TEST(LocalColorRecall, AColorAtExactlyThreeTauIsRight) {
+  EXPECT_EQ(recall_of_color({153, 0, 0}, 0.2).n_recalled, 1U);  // 153 / 255 = 3 x 0.2
+  EXPECT_EQ(recall_of_color({154, 0, 0}, 0.2).n_recalled, 0U);
+  EXPECT_EQ(recall_of_color({0, 0, 51}, 1.0 / 15.0).n_recalled, 1U);
+  EXPECT_EQ(recall_of_color({0, 0, 52}, 1.0 / 15.0).n_recalled, 0U);
+  EXPECT_EQ(recall_of_color({60, 0, 80}, 100.0 / 765.0).n_recalled, 1U);  // 60^2 + 80^2 = 100^2
+  EXPECT_EQ(recall_of_color({60, 1, 80}, 100.0 / 765.0).n_recalled, 0U);
+  EXPECT_EQ(recall_of_color({76, 0, 0}, 0.1).n_recalled, 1U);  // of 76.5
+  EXPECT_EQ(recall_of_color({77, 0, 0}, 0.1).n_recalled, 0U);
+}
+
+TEST(LocalColorRecall, AFloatColorAtExactlyThreeTauIsRight) {
+  test::Clouds clouds{test::cloud_of({{0, 0, 0}}), test::cloud_of({{0, 0, 0}})};
+  clouds.reference.colors = Array<RgbF>{{0.125f, 0, 0}};
+  clouds.estimate.colors = Array<RgbF>{{0.875f, 0, 0}};
+  EXPECT_EQ(recall(clouds, 0.25, 0.5).n_recalled, 1U);
+  EXPECT_EQ(recall(clouds, 0.2499999, 0.5).n_recalled, 0U);
+}
+
+TEST(LocalColorRecall, TheRadiusIsInclusive) {
+  const test::Clouds clouds{test::cloud_of({{0, 0, 0}}, {{0, 0, 0}}), test::cloud_of({{0.5f, 0, 0}}, {{0, 0, 0}})};
+  EXPECT_EQ(recall(clouds, 0.1, 0.5).n_recalled, 1U);
+  const LocalColorRecall none = recall(clouds, 0.1, std::nextafter(0.5, 0.0));
+  EXPECT_EQ(none.n_covered, 0U);
+  EXPECT_EQ(none.value(), 0.0);
+  EXPECT_TRUE(std::isnan(none.conditional()));
+}
+
+TEST(LocalColorRecall, EqualsTheDefinition) {
+  const test::Clouds clouds = test::two_sheets();
+  const MapPair pair = clouds.pair();
+  for (double tau : {0.02, 0.05, 0.1, 0.2}) {
+    for (double radius_m : {0.1, 0.5, 2.0}) {
+      SCOPED_TRACE(testing::Message() << "tau " << tau << ", radius " << radius_m);
+      const LocalColorRecall found = local_color_recall(pair, {tau, radius_m, false});
+      const Array<RecallClass> expected = classes_by_definition(clouds, tau, radius_m);
+      EXPECT_EQ(in_original_order(pair.reference.index.points, found.classes), expected);
+      const auto count = [&](RecallClass c) { return static_cast<std::uint64_t>(std::count(expected.begin(), expected.end(), c)); };
+      EXPECT_EQ(found.n_recalled, count(RecallClass::kRecalled));
+      EXPECT_EQ(found.n_covered, found.n_recalled + count(RecallClass::kWrongColor));
+    }
+  }
+}
+
+TEST(LocalColorRecall, OfAMapAndItselfIsOne) {
+  // Coincident points of different colors too: each finds its own.
+  PointCloud repainted = test::painted_triplicates(300);
+  test::paint(repainted, 17);
+  for (const PointCloud& cloud : {test::two_sheets().reference, test::painted_triplicates(300), repainted}) {
+    const LocalColorRecall same = recall({cloud, cloud}, 1e-6, 1e-6, true);
+    EXPECT_EQ(same.value(), 1.0);
+    EXPECT_EQ(same.coverage(), 1.0);
+    EXPECT_DOUBLE_EQ(same.curve.area, 1.0);
+  }
+}
+
+TEST(LocalColorRecall, RisesWithTauUpToTheCoverage) {
+  const MapPair pair = test::two_sheets().pair();
+  std::uint64_t before = 0;
+  for (double tau = 0.01; tau < 0.7; tau += 0.03) {
+    const LocalColorRecall found = local_color_recall(pair, {tau, 0.5, false});
+    EXPECT_GE(found.n_recalled, before);
+    EXPECT_LE(found.n_recalled, found.n_covered);
+    before = found.n_recalled;
+  }
+  // No two colors are farther apart than sqrt 3 < 3 x 0.6.
+  const LocalColorRecall any = local_color_recall(pair, {0.6, 0.5, false});
+  EXPECT_EQ(any.n_recalled, any.n_covered);
+  EXPECT_LT(any.n_covered, any.n_reference);
+}
+
+TEST(LocalColorRecall, ValueAndCoverageRiseWithTheRadius) {
+  const MapPair pair = test::two_sheets().pair();
+  LocalColorRecall before = local_color_recall(pair, {0.1, 0.02, false});
+  for (double radius_m : {0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 100.0}) {
+    const LocalColorRecall after = local_color_recall(pair, {0.1, radius_m, false});
+    EXPECT_GE(after.n_covered, before.n_covered);
+    EXPECT_GE(after.n_recalled, before.n_recalled);
+    EXPECT_LE(after.n_recalled, after.n_covered);
+    before = after;
+  }
+  EXPECT_EQ(before.coverage(), 1.0);
+}
+
+TEST(LocalColorRecall, AppendedEstimatePointsNeverLowerIt) {
+  test::Clouds clouds = test::two_sheets();
+  LocalColorRecall before = recall(clouds, 0.1, 0.5);
+  for (unsigned step = 0; step < 3; ++step) {
+    PointCloud more = test::sheet_cloud(500, 30 + step);
+    test::paint(more, step);
+    clouds.estimate = test::appended(clouds.estimate, more);
+    const LocalColorRecall after = recall(clouds, 0.1, 0.5);
+    EXPECT_GE(after.n_covered, before.n_covered);
+    EXPECT_GT(after.n_recalled, before.n_recalled);
+    before = after;
+  }
+}
+
+TEST(LocalColorRecall, TheCurveIsOneRecallForEachTau) {
+  const MapPair pair = test::two_sheets().pair();
+  for (double tau : {0.01, 0.1, 0.5}) {  // below, among and above those of the curve
+    const LocalColorRecall found = local_color_recall(pair, {tau, 0.5, true});
+    EXPECT_EQ(found.n_recalled, local_color_recall(pair, {tau, 0.5, false}).n_recalled);
+    const RecallCurve& curve = found.curve;
+    ASSERT_EQ(curve.tau.size(), 15U);
+    ASSERT_EQ(curve.value.size(), 15U);
+    for (std::size_t i = 0; i < 15; ++i) {
+      EXPECT_DOUBLE_EQ(curve.tau[i], 0.02 * static_cast<double>(i + 1));
+      EXPECT_EQ(curve.value[i], local_color_recall(pair, {curve.tau[i], 0.5, false}).value());
+    }
+    EXPECT_TRUE(std::is_sorted(curve.value.begin(), curve.value.end()));
+    EXPECT_LT(curve.value.front(), curve.value.back());
+  }
+}
+
+TEST(LocalColorRecall, AreaUnderTheCurveByHand) {
+  // A difference of 153 / 255 is right from tau = 0.2 on: (0.02 / 2 + 0.1) / 0.28.
+  const test::Clouds clouds{test::cloud_of({{0, 0, 0}}, {{0, 0, 0}}), test::cloud_of({{0, 0, 0}}, {{0, 153, 0}})};
+  const RecallCurve curve = recall(clouds, 0.1, 0.5, true).curve;
+  EXPECT_EQ(curve.value[8], 0.0);
+  EXPECT_EQ(curve.value[9], 1.0);
+  EXPECT_DOUBLE_EQ(curve.area, 11.0 / 28.0);
+}
+
+TEST(LocalColorRecall, IsInvariantUnderMotionPermutationTranslationAndScale) {
+  const test::Clouds clouds = test::two_sheets();
+  const LocalColorRecall expected = recall(clouds, 0.1, 0.5);
+  // No pair of this size lies within rounding of the radius.
+  expect_same(recall(test::moved(clouds, test::rigid_motion()), 0.1, 0.5), expected);
+  expect_same(recall(test::permuted(clouds), 0.1, 0.5), expected);
+  expect_same(recall(test::moved(clouds, test::translation({1e6, -1e6, 1e6})), 0.1, 0.5), expected);
+  expect_same(recall(test::moved(clouds, test::scaling(4.0)), 0.1, 2.0), expected);
+}
+
+TEST(LocalColorRecall, SameForAnyNumberOfThreads) {
+  const MapPair pair = test::two_sheets(90000, 80000).pair();
+  const LocalColorRecall many = local_color_recall(pair, {0.02, 0.3, false});
+  const ThreadLimit limit(1);
+  EXPECT_EQ(local_color_recall(pair, {0.02, 0.3, false}).classes, many.classes);
+}
+
+TEST(LocalColorRecall, NeedsColorsInBothMaps) {
+  test::Clouds clouds = test::two_sheets(10, 10);
+  clouds.reference.colors = std::monostate{};
+  EXPECT_THROW(recall(clouds, 0.1, 0.5), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace cmap
