@@ -18,15 +18,16 @@ std::vector<std::string> sample_names() {
   const fs::path root = test::source_folder() / "data_samples";
   if (!fs::is_directory(root)) return names;
   for (const auto& entry : fs::recursive_directory_iterator(root)) {
-    if (entry.path().filename() == "expected.json") names.push_back(fs::relative(entry.path().parent_path(), root).string());
+    if (entry.path().filename() == "expected.json")
+      names.push_back(fs::relative(entry.path().parent_path(), root).string());
   }
   std::sort(names.begin(), names.end());
   return names;
 }
 
 /// Both implementations work in double from the same float coordinates; what is left is the order of sums, and for the
-/// entropy and the Wasserstein distance an eigenvalue or determinant that keeps ten digits of sixteen. Below 1e-12 there
-/// is nothing but rounding where 0 is expected.
+/// entropy and the Wasserstein distance an eigenvalue or determinant that keeps ten digits of sixteen. Below 1e-12
+/// there is nothing but rounding where 0 is expected.
 constexpr test::Tolerance kTolerance{1e-9, 1e-12};
 
 class Conformance : public testing::TestWithParam<std::string> {
@@ -40,7 +41,8 @@ class Conformance : public testing::TestWithParam<std::string> {
     options.metrics = {"all"};
     options.index = index;
     apply_config(options, expected.at("options").dump(), (folder / "expected.json").string());
-    return evaluate(read_point_cloud(folder / "reference.ply").cloud, read_point_cloud(folder / "estimate.ply").cloud, options);
+    return evaluate(read_point_cloud(folder / "reference.ply").cloud, read_point_cloud(folder / "estimate.ply").cloud,
+                    options);
   }
 
   static void expect_metrics(const Json& expected, const Evaluation& found) {
@@ -69,7 +71,8 @@ TEST_P(Conformance, EveryNumberIsAsExpected) {
 
 INSTANTIATE_TEST_SUITE_P(DataSamples, Conformance, testing::ValuesIn(sample_names()), [](const auto& sample) {
   std::string name = sample.param;
-  std::replace_if(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
   return name;
 });
 
@@ -81,7 +84,8 @@ TEST_P(ConformanceWithFlann, EveryNumberIsAsExpected) {
 }
 
 // Two nearest points are never equally near in these, so that FLANN's choice is the set's.
-INSTANTIATE_TEST_SUITE_P(WithoutTies, ConformanceWithFlann, testing::Values("town", "micro/color_shift", "micro/two_points"),
+INSTANTIATE_TEST_SUITE_P(WithoutTies, ConformanceWithFlann,
+                         testing::Values("town", "micro/color_shift", "micro/two_points"),
                          [](const auto& sample) { return std::to_string(sample.index); });
 
 TEST(ConformanceSet, IsFound) {

@@ -58,7 +58,9 @@ class RecordComparison {
  public:
   RecordComparison(Tolerance tolerance, WorstDifferences& worst) : tolerance_(tolerance), worst_(worst) {}
 
-  void compare(const std::string& metric, const Json& expected, const Json& found) { at(metric, expected, found, metric); }
+  void compare(const std::string& metric, const Json& expected, const Json& found) {
+    at(metric, expected, found, metric);
+  }
 
  private:
   void at(const std::string& metric, const Json& expected, const Json& found, const std::string& path) {
@@ -71,7 +73,8 @@ class RecordComparison {
         }
       }
     } else if (expected.is_array() && found.is_array() && expected.size() == found.size()) {
-      for (std::size_t i = 0; i < expected.size(); ++i) at(metric, expected[i], found[i], path + "/" + std::to_string(i));
+      for (std::size_t i = 0; i < expected.size(); ++i)
+        at(metric, expected[i], found[i], path + "/" + std::to_string(i));
     } else if (expected.is_number_float() && found.is_number()) {
       number(metric, expected.get<double>(), found.get<double>(), path);
     } else {
@@ -93,7 +96,8 @@ class RecordComparison {
 };
 
 /// The records of two evaluations that should be one.
-inline void expect_same_records(const Evaluation& expected, const Evaluation& found, Tolerance tolerance, WorstDifferences& worst) {
+inline void expect_same_records(const Evaluation& expected, const Evaluation& found, Tolerance tolerance,
+                                WorstDifferences& worst) {
   ASSERT_EQ(expected.metrics.size(), found.metrics.size());
   ASSERT_FALSE(expected.metrics.empty());
   for (std::size_t m = 0; m < expected.metrics.size(); ++m) {

@@ -53,6 +53,9 @@ inline std::vector<std::string> warning_ids(const std::vector<Warning>& warnings
   return ids;
 }
 
+/// No warning.
+inline const std::vector<std::string> kNone;
+
 inline EvaluationOptions options_for(std::vector<std::string> metrics) {
   EvaluationOptions options;
   options.metrics = std::move(metrics);

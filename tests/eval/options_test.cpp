@@ -121,6 +121,7 @@ struct Refused {
   const char* name;
   const char* value;
   const char* says;
+  friend void PrintTo(const Refused& refused, std::ostream* out) { *out << refused.name << " " << refused.value; }
 };
 
 class BadJson : public ::testing::TestWithParam<Refused> {};
@@ -235,6 +236,7 @@ TEST(Config, IsReadFromAFile) {
 struct PresetCase {
   const char* name;
   const char* differs_from_the_defaults_in;
+  friend void PrintTo(const PresetCase& preset, std::ostream* out) { *out << preset.name; }
 };
 
 class Presets : public ::testing::TestWithParam<PresetCase> {};

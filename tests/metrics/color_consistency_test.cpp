@@ -62,9 +62,9 @@ TEST(ColorConsistency, HalfBlackHalfWhite) {
 
 TEST(ColorConsistency, HandComputedOverThreeVoxels) {
   // Traces 1.5, 0 and 0.02 (red 0 and 51: variance 0.04 / 2); a single point below.
-  const PointCloud cloud = test::cloud_of(
-      {{0.1f, 0, 0}, {0.2f, 0, 0}, {1.1f, 0, 0}, {1.2f, 0, 0}, {2.1f, 0, 0}, {2.2f, 0, 0}, {9, 9, 9}},
-      {kBlack, kWhite, {7, 8, 9}, {7, 8, 9}, {0, 3, 3}, {51, 3, 3}, kWhite});
+  const PointCloud cloud =
+      test::cloud_of({{0.1f, 0, 0}, {0.2f, 0, 0}, {1.1f, 0, 0}, {1.2f, 0, 0}, {2.1f, 0, 0}, {2.2f, 0, 0}, {9, 9, 9}},
+                     {kBlack, kWhite, {7, 8, 9}, {7, 8, 9}, {0, 3, 3}, {51, 3, 3}, kWhite});
   const ColorConsistency found = consistency(cloud, 1.0);
   EXPECT_EQ(found.n_voxels, 3U);
   EXPECT_EQ(found.n_voxels_below_min, 1U);
@@ -124,7 +124,8 @@ TEST(ColorConsistency, OneColorIsPerfectlyConsistent) {
 TEST(ColorConsistency, DoesNotChangeWithAColorShift) {
   PointCloud cloud = test::sheet_cloud(2000, 1);
   Array<Rgb8> colors(2000);
-  for (std::size_t i = 0; i < 2000; ++i) colors[i] = {static_cast<std::uint8_t>(i % 100), static_cast<std::uint8_t>(i % 41), 0};
+  for (std::size_t i = 0; i < 2000; ++i)
+    colors[i] = {static_cast<std::uint8_t>(i % 100), static_cast<std::uint8_t>(i % 41), 0};
   cloud.colors = colors;
   const ColorConsistency expected = consistency(cloud, 1.0);
   for (Rgb8& c : colors) c = {static_cast<std::uint8_t>(c[0] + 100), static_cast<std::uint8_t>(c[1] + 100), 100};

@@ -11,7 +11,8 @@ using Doubles = std::vector<double>;
 
 const Doubles kThresholds_m{0.2, 0.1, 0.08, 0.05, 0.01};
 
-DistanceStats stats_of(const Array<double>& sq_dist, const Doubles& thresholds_m = kThresholds_m, double truncation_m = 1.0) {
+DistanceStats stats_of(const Array<double>& sq_dist, const Doubles& thresholds_m = kThresholds_m,
+                       double truncation_m = 1.0) {
   return distance_stats(sq_dist, thresholds_m, truncation_m);
 }
 

@@ -44,7 +44,8 @@ void expect_same_scores(const Directions& found, const Directions& expected, dou
 
 TEST(Chamfer, HandComputed) {
   // Estimate to reference: 0.25, 3; reference to estimate: 0.25, 3, 5.
-  const test::Clouds clouds{test::cloud_of({{0, 0, 0}, {7, 0, 0}, {7, 8, 0}}), test::cloud_of({{0.25f, 0, 0}, {7, 3, 0}})};
+  const test::Clouds clouds{test::cloud_of({{0, 0, 0}, {7, 0, 0}, {7, 8, 0}}),
+                            test::cloud_of({{0.25f, 0, 0}, {7, 3, 0}})};
   const Directions d(clouds);
   const Chamfer c = d.chamfer();
   EXPECT_DOUBLE_EQ(c.l1_sum, 3.25 / 2 + 8.25 / 3);
@@ -110,7 +111,8 @@ TEST(Geometry, IsInvariantUnderATranslationByAMillionMeters) {
 
 TEST(Geometry, ScalesWithTheMaps) {
   const test::Clouds clouds = test::two_sheets();
-  expect_same_scores(Directions(test::moved(clouds, test::scaling(4.0)), 4.0), Directions(clouds), test::kSummation, 4.0);
+  expect_same_scores(Directions(test::moved(clouds, test::scaling(4.0)), 4.0), Directions(clouds), test::kSummation,
+                     4.0);
   expect_same_scores(Directions(test::moved(clouds, test::scaling(0.3)), 0.3), Directions(clouds), test::kMoved, 0.3);
 }
 

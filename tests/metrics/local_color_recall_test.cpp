@@ -93,7 +93,9 @@ TEST(LocalColorRecall, EqualsTheDefinition) {
       const LocalColorRecall found = local_color_recall(pair, {tau, radius_m, false});
       const Array<RecallClass> expected = classes_by_definition(clouds, tau, radius_m);
       EXPECT_EQ(in_original_order(pair.reference.index.points, found.classes), expected);
-      const auto count = [&](RecallClass c) { return static_cast<std::uint64_t>(std::count(expected.begin(), expected.end(), c)); };
+      const auto count = [&](RecallClass c) {
+        return static_cast<std::uint64_t>(std::count(expected.begin(), expected.end(), c));
+      };
       EXPECT_EQ(found.n_recalled, count(RecallClass::kRecalled));
       EXPECT_EQ(found.n_covered, found.n_recalled + count(RecallClass::kWrongColor));
     }

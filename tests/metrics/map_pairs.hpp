@@ -142,6 +142,6 @@ inline constexpr double kSummation = 1e-12;
 inline constexpr double kMoved = 2e-5;
 
 #define EXPECT_NEAR_RELATIVE(actual, expected, tolerance) \
-  EXPECT_NEAR(actual, expected, (tolerance) * std::abs(static_cast<double>(expected)))
+  EXPECT_NEAR(actual, expected, (tolerance)*std::abs(static_cast<double>(expected)))
 
 }  // namespace cmap::test

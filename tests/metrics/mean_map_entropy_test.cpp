@@ -69,7 +69,8 @@ TEST(MeanMapEntropy, EqualsTheDefinition) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (const auto& p : neighbors) mean += p / static_cast<double>(neighbors.size());
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-    for (const auto& p : neighbors) covariance += (p - mean) * (p - mean).transpose() / static_cast<double>(neighbors.size() - 1);
+    for (const auto& p : neighbors)
+      covariance += (p - mean) * (p - mean).transpose() / static_cast<double>(neighbors.size() - 1);
     sum += 0.5 * std::log(std::pow(2.0 * std::numbers::pi * std::numbers::e, 3.0) * covariance.determinant());
     ++n;
   }
@@ -84,7 +85,8 @@ TEST(MeanMapEntropy, IsInvariantUnderMotionPermutationAndTranslation) {
   const PointCloud cloud = block();
   const MeanMapEntropy expected = entropy(cloud, kRadius_m, 8);
   expect_same(entropy(test::permuted(cloud, 3), kRadius_m, 8), expected, test::kSummation * std::abs(expected.value));
-  expect_same(entropy(transformed(cloud, test::translation({1e6, -1e6, 1e6})), kRadius_m, 8), expected, test::kSummation);
+  expect_same(entropy(transformed(cloud, test::translation({1e6, -1e6, 1e6})), kRadius_m, 8), expected,
+              test::kSummation);
   // Coordinates below 16 m are rounded to 5e-7 m: 1e-6 of the radius, in each of three axes.
   expect_same(entropy(transformed(cloud, test::rigid_motion()), kRadius_m, 8), expected, 1e-5);
 }
@@ -114,7 +116,8 @@ TEST(MeanMapEntropy, IsLowerForASharperMap) {
   PointCloud thick = thin;
   for (Eigen::Vector3f& p : thin.positions) p.z() *= 0.01f;
   for (Eigen::Vector3f& p : thick.positions) p.z() *= 0.05f;
-  EXPECT_LT(entropy(thin, kRadius_m, 10).value, entropy(thick, kRadius_m, 10).value - 1.0);  // ln 5 = 1.6, at infinite radius
+  EXPECT_LT(entropy(thin, kRadius_m, 10).value,
+            entropy(thick, kRadius_m, 10).value - 1.0);  // ln 5 = 1.6, at infinite radius
 }
 
 }  // namespace

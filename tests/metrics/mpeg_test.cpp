@@ -41,11 +41,13 @@ TEST(Mpeg, HandComputed) {
 }
 
 TEST(Mpeg, ChromaOfPureColors) {
-  const MpegDirection red = distortion(test::cloud_of({{0, 0, 0}}, {{255, 0, 0}}), test::cloud_of({{0, 0, 0}}, {kBlack})).symmetric;
+  const MpegDirection red =
+      distortion(test::cloud_of({{0, 0, 0}}, {{255, 0, 0}}), test::cloud_of({{0, 0, 0}}, {kBlack})).symmetric;
   EXPECT_NEAR(red.color_mse[0], 0.2126 * 0.2126, kFloatColor);
   EXPECT_NEAR(red.color_mse[1], 0.1146 * 0.1146, kFloatColor);
   EXPECT_NEAR(red.color_mse[2], 0.25, kFloatColor);
-  const MpegDirection blue = distortion(test::cloud_of({{0, 0, 0}}, {{0, 0, 255}}), test::cloud_of({{0, 0, 0}}, {kBlack})).symmetric;
+  const MpegDirection blue =
+      distortion(test::cloud_of({{0, 0, 0}}, {{0, 0, 255}}), test::cloud_of({{0, 0, 0}}, {kBlack})).symmetric;
   EXPECT_NEAR(blue.color_mse[1], 0.25, kFloatColor);
   EXPECT_NEAR(blue.color_mse[2], 0.0458 * 0.0458, kFloatColor);
 }
@@ -70,10 +72,12 @@ TEST(Mpeg, NearlyEqualDistancesCountAsEqualStepByStep) {
   // Squared distances 1, 1 + 6e-9 and more: each less than 1e-8 from the last. In floats: steps of 2^-27 in z^2.
   const float z = std::ldexp(1.0f, -14);  // z^2 = 2^-28 = 3.7e-9
   const PointCloud center = test::cloud_of({{0, 0, 0}}, {kBlack});
-  const PointCloud chain = test::cloud_of({{1, 0, 0}, {-1, 0, z}, {0, 1, 2 * z}, {0, -1, 0.5f}}, {{30, 30, 30}, {60, 60, 60}, {90, 90, 90}, kWhite});
+  const PointCloud chain = test::cloud_of({{1, 0, 0}, {-1, 0, z}, {0, 1, 2 * z}, {0, -1, 0.5f}},
+                                          {{30, 30, 30}, {60, 60, 60}, {90, 90, 90}, kWhite});
   // Steps 3.7e-9 and 1.1e-8: the third is too far.
   EXPECT_NEAR(distortion(center, chain).reference_to_estimate.color_mse[0], sq_luma(45), 1e-8);
-  const PointCloud closer = test::cloud_of({{1, 0, 0}, {-1, 0, z}, {0, 1, 1.5f * z}, {0, -1, 0.5f}}, {{30, 30, 30}, {60, 60, 60}, {90, 90, 90}, kWhite});
+  const PointCloud closer = test::cloud_of({{1, 0, 0}, {-1, 0, z}, {0, 1, 1.5f * z}, {0, -1, 0.5f}},
+                                           {{30, 30, 30}, {60, 60, 60}, {90, 90, 90}, kWhite});
   EXPECT_NEAR(distortion(center, closer).reference_to_estimate.color_mse[0], sq_luma(60), 1e-8);
 }
 
@@ -95,7 +99,8 @@ TEST(Mpeg, ManyEquallyNearNeighborsAreLookedFor) {
 }
 
 TEST(Mpeg, OfACloudAndItselfIsPerfect) {
-  for (const PointCloud& cloud : {test::two_sheets(500, 10).reference, test::painted_triplicates(200), test::cloud_of({{1, 2, 3}}, {kWhite})}) {
+  for (const PointCloud& cloud :
+       {test::two_sheets(500, 10).reference, test::painted_triplicates(200), test::cloud_of({{1, 2, 3}}, {kWhite})}) {
     const MpegDistortion same = distortion(cloud, cloud);
     EXPECT_EQ(same.symmetric.point_mse_m2, 0.0);
     EXPECT_EQ(same.symmetric.sq_hausdorff_m2, 0.0);
@@ -124,7 +129,8 @@ TEST(Mpeg, EqualsTheDefinitionWithoutTies) {
   // The tool subtracts positions in float: 1e-7 of a difference.
   EXPECT_NEAR_RELATIVE(found.point_mse_m2, mse, 1e-6);
   EXPECT_NEAR_RELATIVE(found.sq_hausdorff_m2, sq_hausdorff, 1e-6);
-  for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(found.color_mse[c], color_mse[static_cast<Eigen::Index>(c)], kFloatColor);
+  for (std::size_t c = 0; c < 3; ++c)
+    EXPECT_NEAR(found.color_mse[c], color_mse[static_cast<Eigen::Index>(c)], kFloatColor);
 }
 
 TEST(Mpeg, SymmetricIsTheWorseOfBothAndTheOrderOfPointsDoesNotMatter) {
@@ -132,8 +138,10 @@ TEST(Mpeg, SymmetricIsTheWorseOfBothAndTheOrderOfPointsDoesNotMatter) {
   const MpegDistortion d = distortion(clouds.reference, clouds.estimate);
   const test::Clouds other = test::permuted(clouds);
   const MpegDistortion swapped = distortion(other.estimate, other.reference);
-  EXPECT_EQ(d.symmetric.point_mse_m2, std::max(d.reference_to_estimate.point_mse_m2, d.estimate_to_reference.point_mse_m2));
-  EXPECT_EQ(d.symmetric.color_psnr_db[0], std::min(d.reference_to_estimate.color_psnr_db[0], d.estimate_to_reference.color_psnr_db[0]));
+  EXPECT_EQ(d.symmetric.point_mse_m2,
+            std::max(d.reference_to_estimate.point_mse_m2, d.estimate_to_reference.point_mse_m2));
+  EXPECT_EQ(d.symmetric.color_psnr_db[0],
+            std::min(d.reference_to_estimate.color_psnr_db[0], d.estimate_to_reference.color_psnr_db[0]));
   EXPECT_EQ(swapped.symmetric.point_mse_m2, d.symmetric.point_mse_m2);
   EXPECT_EQ(swapped.symmetric.color_mse, d.symmetric.color_mse);
   EXPECT_EQ(swapped.estimate_to_reference.sq_hausdorff_m2, d.reference_to_estimate.sq_hausdorff_m2);

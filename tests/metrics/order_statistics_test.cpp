@@ -12,7 +12,9 @@
 namespace cmap {
 namespace {
 
-double quantile(const std::vector<double>& values, double share) { return quantiles(values, std::array{share}).front(); }
+double quantile(const std::vector<double>& values, double share) {
+  return quantiles(values, std::array{share}).front();
+}
 
 /// Type 7 from sorted values, weighting both neighbors.
 double sorted_quantile(std::vector<double> values, double share) {

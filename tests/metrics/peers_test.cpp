@@ -74,7 +74,8 @@ TEST(MapEvalWasserstein, DividesOnceUpToTenPointsAndThreeTimesBeyond) {
   // Diagonal covariances, where its Cholesky factor is the root: sqrt3 |s1 - s2|.
   const double once = mapeval_distance({10, kZero, diagonal(36, 36, 36)}, {10, kZero, diagonal(9, 9, 9)});
   EXPECT_NEAR_RELATIVE(once, std::numbers::sqrt3 * (2.0 - 1.0), test::kSummation);
-  const double thrice = mapeval_distance({11, kZero, diagonal(4000, 4000, 4000)}, {11, kZero, diagonal(1000, 1000, 1000)});
+  const double thrice =
+      mapeval_distance({11, kZero, diagonal(4000, 4000, 4000)}, {11, kZero, diagonal(1000, 1000, 1000)});
   EXPECT_NEAR_RELATIVE(thrice, std::numbers::sqrt3 * (2.0 - 1.0), test::kSummation);
 }
 
@@ -83,8 +84,9 @@ TEST(MapEvalWasserstein, RaisesEigenvaluesToAMillionth) {
   const Gaussian a{101, {0.25, 0, 0}, diagonal(0.5, 0.1, 0.0)};
   const Gaussian b{101, {0.25, 0.5, 0}, diagonal(0.0, 0.0, 0.9)};
   EXPECT_NEAR(mapeval_distance(a, b), 0.5, 1e-12);
-  EXPECT_NEAR_RELATIVE(mapeval_distance(mapeval_gaussian(20, kZero, diagonal(0, 0, 0)), mapeval_gaussian(20, kZero, diagonal(1, 1, 1))),
-                       std::numbers::sqrt3 * (1.0 - 1e-3), test::kSummation);
+  EXPECT_NEAR_RELATIVE(
+      mapeval_distance(mapeval_gaussian(20, kZero, diagonal(0, 0, 0)), mapeval_gaussian(20, kZero, diagonal(1, 1, 1))),
+      std::numbers::sqrt3 * (1.0 - 1e-3), test::kSummation);
 }
 
 TEST(MapEvalWasserstein, TakesACholeskyFactorForTheRoot) {
@@ -92,7 +94,8 @@ TEST(MapEvalWasserstein, TakesACholeskyFactorForTheRoot) {
   // sqrt(3/2) + sqrt(1/2) + 1.
   Eigen::Matrix3d s2 = Eigen::Matrix3d::Identity();
   s2(0, 1) = s2(1, 0) = 0.5;
-  const double theirs = mapeval_distance(mapeval_gaussian(30, kZero, Eigen::Matrix3d::Identity()), mapeval_gaussian(30, kZero, s2));
+  const double theirs =
+      mapeval_distance(mapeval_gaussian(30, kZero, Eigen::Matrix3d::Identity()), mapeval_gaussian(30, kZero, s2));
   EXPECT_NEAR(theirs, std::sqrt(6.0 - 2.0 * (2.0 + std::numbers::sqrt3 / 2.0)), 1e-12);
   const double true_w = std::sqrt(6.0 - 2.0 * (std::sqrt(1.5) + std::sqrt(0.5) + 1.0));
   EXPECT_GT(theirs, true_w + 0.1);

@@ -3,16 +3,23 @@
 namespace cmap::CMAP_LANES {
 namespace {
 
-/// A float squared distance within this of the squared radius is decided again in double: its relative error is below
-/// 4 roundings of 2^-24.
-constexpr double kUndecided = 1e-6;
+/// Squared color distances, with the same roundings on every instruction set; exact for 8-bit colors.
+inline Float16 sq_color_dist(const Lanes3& color, float r, float g, float b) {
+  const Float16 dr = color.x - broadcast(r);
+  const Float16 dg = color.y - broadcast(g);
+  const Float16 db = color.z - broadcast(b);
+  return dr * dr + dg * dg + db * db;
+}
+
+/// Color boxes are entered up to this factor beyond the best color, for the rounding of their distances.
+constexpr float kColorReach = static_cast<float>(1.0 + kRounding);
 
 class ColorGroup {
  public:
   ColorGroup(const Tree& tree, const ColorBlock* colors, const BoxLevels& color_boxes, const ColorSearch& search)
       : tree_(tree), colors_(colors), sq_radius_(search.radius_m * search.radius_m), stop_at_(search.stop_at) {
-    sq_radius_surely_ = static_cast<float>(sq_radius_ * (1.0 - kUndecided));
-    sq_radius_perhaps_ = static_cast<float>(sq_radius_ * (1.0 + kUndecided));
+    sq_radius_surely_ = static_cast<float>(sq_radius_ * (1.0 - kRounding));
+    sq_radius_perhaps_ = static_cast<float>(sq_radius_ * (1.0 + kRounding));
     for (int l = 0; l < tree.n_levels; ++l) color_boxes_[l] = color_boxes.data()[l].data();
   }
 
@@ -32,7 +39,7 @@ class ColorGroup {
 
   Mask16 children(int level, std::uint32_t node, const Float16& sq_dist) const {
     const Float16 color_dist = sq_dist_to_children(color_boxes_[level][node], color_box_);
-    return less_equal(sq_dist, broadcast(sq_radius_perhaps_)) & less(color_dist, broadcast(bound_));
+    return less_equal(sq_dist, broadcast(sq_radius_perhaps_)) & less(color_dist, broadcast(bound_ * kColorReach));
   }
 
   bool still(float) const { return bound_ > -kInfinity; }
@@ -41,7 +48,7 @@ class ColorGroup {
     const Mask16 near =
         less_equal(sq_dist_to_child(tree_.boxes[level][node], c, q_), broadcast(sq_radius_perhaps_)) & active_;
     if (bits(near) == 0) return false;
-    return bits(near & less(sq_dist_to_child(color_boxes_[level][node], c, color_), best_)) != 0;
+    return bits(near & less(sq_dist_to_child(color_boxes_[level][node], c, color_), best_ * broadcast(kColorReach))) != 0;
   }
 
   void scan(std::uint32_t block) {
@@ -52,7 +59,7 @@ class ColorGroup {
       const Float16 sq_dist = sq_dist_to(q_, p.x[k], p.y[k], p.z[k]);
       const Mask16 perhaps = less_equal(sq_dist, broadcast(sq_radius_perhaps_)) & active_;
       if (bits(perhaps) == 0) continue;
-      const Float16 color_dist = sq_dist_to(color_, colors.r[k], colors.g[k], colors.b[k]);
+      const Float16 color_dist = sq_color_dist(color_, colors.r[k], colors.g[k], colors.b[k]);
       const Mask16 better = perhaps & less(color_dist, best_);
       if (bits(better) == 0) continue;
       const std::uint32_t surely = bits(less_equal(sq_dist, broadcast(sq_radius_surely_)));

@@ -41,6 +41,9 @@ inline Float16 operator-(const Float16& a, const Float16& b) {
 inline Float16 operator*(const Float16& a, const Float16& b) {
   return {{_mm256_mul_ps(a.part[0], b.part[0]), _mm256_mul_ps(a.part[1], b.part[1])}};
 }
+inline Float16 multiply_add(const Float16& a, const Float16& b, const Float16& c) {
+  return {{_mm256_fmadd_ps(a.part[0], b.part[0], c.part[0]), _mm256_fmadd_ps(a.part[1], b.part[1], c.part[1])}};
+}
 inline Float16 min(const Float16& a, const Float16& b) {
   return {{_mm256_min_ps(a.part[0], b.part[0]), _mm256_min_ps(a.part[1], b.part[1])}};
 }

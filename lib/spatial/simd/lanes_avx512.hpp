@@ -22,6 +22,7 @@ inline Mask16 mask_from_bits(std::uint32_t b) { return {static_cast<__mmask16>(b
 inline Float16 operator+(Float16 a, Float16 b) { return {_mm512_add_ps(a.value, b.value)}; }
 inline Float16 operator-(Float16 a, Float16 b) { return {_mm512_sub_ps(a.value, b.value)}; }
 inline Float16 operator*(Float16 a, Float16 b) { return {_mm512_mul_ps(a.value, b.value)}; }
+inline Float16 multiply_add(Float16 a, Float16 b, Float16 c) { return {_mm512_fmadd_ps(a.value, b.value, c.value)}; }
 inline Float16 min(Float16 a, Float16 b) { return {_mm512_min_ps(a.value, b.value)}; }
 inline Float16 max(Float16 a, Float16 b) { return {_mm512_max_ps(a.value, b.value)}; }
 inline Mask16 less(Float16 a, Float16 b) { return {_mm512_cmp_ps_mask(a.value, b.value, _CMP_LT_OQ)}; }

@@ -51,6 +51,7 @@ CMAP_LANES_BINARY(Mask16, less_equal, _mm_cmple_ps)
 CMAP_LANES_BINARY(Mask16, equal, _mm_cmpeq_ps)
 #undef CMAP_LANES_BINARY
 
+inline Float16 multiply_add(const Float16& a, const Float16& b, const Float16& c) { return a * b + c; }
 inline Float16 load(const float* p) {
   return {{_mm_load_ps(p), _mm_load_ps(p + 4), _mm_load_ps(p + 8), _mm_load_ps(p + 12)}};
 }

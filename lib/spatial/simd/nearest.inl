@@ -6,9 +6,8 @@ namespace {
 constexpr std::uint32_t kAllLanes = 0xffff;
 constexpr std::uint32_t kUnknownIndex = ~0u;
 
-/// Float squared distances closer than this to each other are compared again in double: each has a relative error
-/// below five roundings of 2^-24.
-constexpr float kReach = 1.000001f;
+/// Float squared distances up to this factor above the best are compared with it in double.
+constexpr float kReach = static_cast<float>(1.0 + kRounding);
 
 /// A candidate as it is compared in the end: in double, ties by original index.
 struct Candidate {
@@ -29,10 +28,10 @@ class NearestGroup {
  public:
   NearestGroup(const Tree& tree, const Lanes3& queries)
       : tree_(tree), q_(queries), box_(box_of(queries, mask_from_bits(kAllLanes))) {
-    for (int lane = 0; lane < 16; ++lane) {
-      block_[lane] = 0;
-      exact_[lane].index = kUnknownIndex;
-    }
+    store(x_, q_.x);
+    store(y_, q_.y);
+    store(z_, q_.z);
+    for (int lane = 0; lane < 16; ++lane) exact_[lane].index = kUnknownIndex;
   }
 
   /// Scans blocks that probably hold the answer, so that the walk starts with a tight bound.
@@ -72,12 +71,14 @@ class NearestGroup {
     compare_with(block);
   }
 
-  /// Slot of a lane's nearest point.
-  std::uint32_t slot(int lane) const {
-    if (exact_[lane].index != kUnknownIndex) return exact_[lane].slot;
+  /// The nearest point of every lane.
+  void finish(Candidate* nearest) const {
     alignas(64) float best[16];
     store(best, best_);
-    return exact_in_block(lane, block_[lane], best[lane]).slot;
+    for (int lane = 0; lane < 16; ++lane) {
+      const bool is_known = exact_[lane].index != kUnknownIndex;
+      nearest[lane] = is_known ? exact_[lane] : exact_in_block(lane, block_[lane], best[lane]);
+    }
   }
   std::uint32_t block_of(int lane) const { return block_[lane]; }
 
@@ -119,17 +120,14 @@ class NearestGroup {
   /// Whether a child no nearer than the best so far may still win one of the lanes in double or by its index. Without
   /// this, many copies of one point would all be visited.
   bool can_settle(int level, std::uint32_t node, int c, std::uint32_t lanes) const {
-    alignas(64) float best[16], x[16], y[16], z[16];
+    alignas(64) float best[16];
     store(best, best_);
-    store(x, q_.x);
-    store(y, q_.y);
-    store(z, q_.z);
     const BoxNode& boxes = tree_.boxes[level][node];
     for (; lanes != 0; lanes &= lanes - 1) {
       const int lane = first_bit(lanes);
-      const double dx = gap_in_double(x[lane], boxes.min_x[c], boxes.max_x[c]);
-      const double dy = gap_in_double(y[lane], boxes.min_y[c], boxes.max_y[c]);
-      const double dz = gap_in_double(z[lane], boxes.min_z[c], boxes.max_z[c]);
+      const double dx = gap_in_double(x_[lane], boxes.min_x[c], boxes.max_x[c]);
+      const double dy = gap_in_double(y_[lane], boxes.min_y[c], boxes.max_y[c]);
+      const double dz = gap_in_double(z_[lane], boxes.min_z[c], boxes.max_z[c]);
       const double sq_dist = dx * dx + dy * dy + dz * dz;
       const Candidate& exact = exact_[lane];
       if (exact.index == kUnknownIndex ? sq_dist <= static_cast<double>(best[lane] * kReach)
@@ -142,19 +140,15 @@ class NearestGroup {
 
   /// The lane's nearest point of a block in double, among those within reach of the float distance `best`.
   Candidate exact_in_block(int lane, std::uint32_t block, float best) const {
-    alignas(64) float x[16], y[16], z[16];
-    store(x, q_.x);
-    store(y, q_.y);
-    store(z, q_.z);
     const PointBlock& p = tree_.blocks[block];
-    const Float16 sq_dist = sq_dist_to({load(p.x), load(p.y), load(p.z)}, x[lane], y[lane], z[lane]);
+    const Float16 sq_dist = sq_dist_to({load(p.x), load(p.y), load(p.z)}, x_[lane], y_[lane], z_[lane]);
     std::uint32_t within = bits(less_equal(sq_dist, broadcast(best * kReach)));
     Candidate nearest{static_cast<double>(kInfinity), kUnknownIndex, 0};
     for (; within != 0; within &= within - 1) {
       const auto k = static_cast<std::uint32_t>(first_bit(within));
-      const double dx = static_cast<double>(x[lane]) - static_cast<double>(p.x[k]);
-      const double dy = static_cast<double>(y[lane]) - static_cast<double>(p.y[k]);
-      const double dz = static_cast<double>(z[lane]) - static_cast<double>(p.z[k]);
+      const double dx = static_cast<double>(x_[lane]) - static_cast<double>(p.x[k]);
+      const double dy = static_cast<double>(y_[lane]) - static_cast<double>(p.y[k]);
+      const double dz = static_cast<double>(z_[lane]) - static_cast<double>(p.z[k]);
       const std::uint32_t slot = block * static_cast<std::uint32_t>(kBlockSize) + k;
       const Candidate candidate{dx * dx + dy * dy + dz * dz, tree_.original_index[slot], slot};
       if (comes_before(candidate, nearest)) nearest = candidate;
@@ -168,7 +162,8 @@ class NearestGroup {
   Float16 best_ = broadcast(kInfinity);
   float bound_ = __FLT_MAX__ / 2;  // an absent child is at infinity, never within the bound
   bool any_exact_ = false;
-  std::uint32_t block_[16];
+  alignas(64) float x_[16], y_[16], z_[16];
+  std::uint32_t block_[16] = {};
   Candidate exact_[16];
   std::uint32_t scanned_[4];
   int n_scanned_ = 0;
@@ -203,8 +198,10 @@ inline void write_results(const Tree& tree, const Queries& queries, const Neares
   const PointBlock& q = queries.points.blocks.data()[block];
   const double* shift = queries.shift.data();
   const std::size_t n = queries.points.size - block * kBlockSize;
+  Candidate nearest[16];
+  group.finish(nearest);
   for (std::size_t lane = 0; lane < kBlockSize && lane < n; ++lane) {
-    const std::uint32_t slot = group.slot(static_cast<int>(lane));
+    const std::uint32_t slot = nearest[lane].slot;
     const PointBlock& p = tree.blocks[slot / kBlockSize];
     const std::size_t k = slot % kBlockSize;
     const double dx = (static_cast<double>(q.x[lane]) - static_cast<double>(p.x[k])) + shift[0];

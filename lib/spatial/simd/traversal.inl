@@ -1,12 +1,16 @@
 // What all searches share: groups of sixteen queries, their boxes, and the walk down the tree.
 //
-// Every box distance is computed with the operations of the point distance, (dx dx + dy dy) + dz dz. Rounding is
-// monotone, so a box is never farther than a point in it, and pruning is exact.
+// Distances in float have a relative error below kRounding; whatever comes that close to a limit is decided again in
+// double. So pruning is exact, and results do not depend on how an instruction set rounds.
 
 namespace cmap::CMAP_LANES {
 namespace {
 
 constexpr float kInfinity = __builtin_inff();
+
+/// Bound on the relative difference of two float squared distances that are equal in exact arithmetic: five roundings
+/// of 2^-24 each.
+constexpr double kRounding = 1e-6;
 
 struct Tree {
   explicit Tree(const Bvh& index)
@@ -43,7 +47,9 @@ struct LaneBox {
   Lanes3 min, max;
 };
 
-inline Float16 sq_norm(const Float16& dx, const Float16& dy, const Float16& dz) { return dx * dx + dy * dy + dz * dz; }
+inline Float16 sq_norm(const Float16& dx, const Float16& dy, const Float16& dz) {
+  return multiply_add(dz, dz, multiply_add(dy, dy, dx * dx));
+}
 
 inline Float16 sq_dist_to(const Lanes3& q, float x, float y, float z) {
   return sq_norm(q.x - broadcast(x), q.y - broadcast(y), q.z - broadcast(z));
@@ -60,11 +66,14 @@ inline Float16 sq_dist_to_children(const BoxNode& node, const LaneBox& box) {
                  gap(load(node.min_z), load(node.max_z), box.min.z, box.max.z));
 }
 
+inline Float16 gap_to(const Float16& v, float low, float high) {
+  return v - min(max(v, broadcast(low)), broadcast(high));
+}
+
 /// Squared distances between sixteen queries and one child of the node.
 inline Float16 sq_dist_to_child(const BoxNode& node, int c, const Lanes3& q) {
-  return sq_norm(gap(broadcast(node.min_x[c]), broadcast(node.max_x[c]), q.x, q.x),
-                 gap(broadcast(node.min_y[c]), broadcast(node.max_y[c]), q.y, q.y),
-                 gap(broadcast(node.min_z[c]), broadcast(node.max_z[c]), q.z, q.z));
+  return sq_norm(gap_to(q.x, node.min_x[c], node.max_x[c]), gap_to(q.y, node.min_y[c], node.max_y[c]),
+                 gap_to(q.z, node.min_z[c], node.max_z[c]));
 }
 
 inline Lanes3 load_queries(const PointBlock& block, const Eigen::Vector3d& shift) {
@@ -81,6 +90,20 @@ inline LaneBox box_of(const Lanes3& q, Mask16 active) {
 }
 
 inline int first_bit(std::uint32_t bits_set) { return __builtin_ctz(bits_set); }
+
+/// Scans those blocks below a node of the lowest level that matter to a lane. They are all tested before the first scan:
+/// the tests overlap in the processor, which is worth more than a bound from the scans before.
+template <class Reach>
+inline void scan_children(std::uint32_t node, std::uint32_t candidates, Reach& reach) {
+  std::uint32_t mattering = 0;
+  for (; candidates != 0; candidates &= candidates - 1) {
+    const int c = first_bit(candidates);
+    mattering |= static_cast<std::uint32_t>(reach.matters(0, node, c)) << c;
+  }
+  for (; mattering != 0; mattering &= mattering - 1) {
+    reach.scan(node * static_cast<std::uint32_t>(kBlockSize) + static_cast<std::uint32_t>(first_bit(mattering)));
+  }
+}
 
 /// Walks down to the blocks that may matter. `reach` has
 ///   Mask16 children(level, node, sq_dist)   which children may matter, by their distances to the group's box,
@@ -107,15 +130,15 @@ inline void walk(const Tree& tree, const LaneBox& box, Reach& reach) {
     const Float16 distances = sq_dist_to_children(tree.boxes[top.level][top.node], box);
     std::uint32_t enter = bits(reach.children(top.level, top.node, distances));
     if (enter == 0) continue;
+    if (top.level == 0) {
+      scan_children(top.node, enter, reach);
+      continue;
+    }
     store(sq_dist, distances);
     for (; enter != 0; enter &= enter - 1) {
       const int c = first_bit(enter);
-      const std::uint32_t child = top.node * static_cast<std::uint32_t>(kBlockSize) + static_cast<std::uint32_t>(c);
-      if (top.level > 0) {
-        stack[n_pending++] = {sq_dist[c], child, top.level - 1};
-      } else if (reach.still(sq_dist[c]) && reach.matters(0, top.node, c)) {
-        reach.scan(child);
-      }
+      stack[n_pending++] = {sq_dist[c], top.node * static_cast<std::uint32_t>(kBlockSize) + static_cast<std::uint32_t>(c),
+                            top.level - 1};
     }
   }
 }

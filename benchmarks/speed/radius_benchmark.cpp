@@ -1,0 +1,138 @@
+// Radius work: local color recall and mean map entropy against the same on nanoflann's radius search. Indices are built
+// and nearest neighbors known beforehand on both sides.
+
+#include <benchmark/benchmark.h>
+
+#include <Eigen/LU>
+
+#include "cmap/core/color.hpp"
+#include "cmap/metrics/local_color_recall.hpp"
+#include "cmap/metrics/mean_map_entropy.hpp"
+#include "town_pair.hpp"
+
+#ifdef CMAP_WITH_NANOFLANN
+#include <nanoflann.hpp>
+#endif
+
+namespace {
+
+using cmap::PointCloud;
+
+constexpr double kRadius_m = 0.5;
+constexpr double kTau = 0.1;
+constexpr double kEntropyRadius_m = 0.2;
+
+cmap::MapPair pair_of(const cmap::benchmarks::TownPair& town) {
+  cmap::MapPair pair{cmap::IndexedMap(town.reference), cmap::IndexedMap(town.estimate), {}, {}};
+  pair.nearest_in_estimate = cmap::find_nearest(pair.estimate.index, pair.reference.index.points);
+  return pair;
+}
+
+void recall_cmap(benchmark::State& state) {
+  const cmap::MapPair pair = pair_of(cmap::benchmarks::town(state.range(0), false));
+  std::uint64_t n_recalled = 0;
+  for (auto _ : state) n_recalled = cmap::local_color_recall(pair, {kTau, kRadius_m, false}).n_recalled;
+  state.counters["recalled"] = static_cast<double>(n_recalled);
+}
+
+void entropy_cmap(benchmark::State& state) {
+  const cmap::Bvh index(cmap::sort_points(cmap::benchmarks::town(state.range(0), false).estimate));
+  std::uint64_t n = 0;
+  for (auto _ : state) n = cmap::mean_map_entropy(cmap::neighborhood_shapes(index, kEntropyRadius_m), 10).n;
+  state.counters["valid"] = static_cast<double>(n);
+}
+
+#ifdef CMAP_WITH_NANOFLANN
+
+struct View {
+  const PointCloud& cloud;
+  std::size_t kdtree_get_point_count() const { return cloud.size(); }
+  float kdtree_get_pt(std::size_t i, std::size_t axis) const { return cloud.positions[i][static_cast<Eigen::Index>(axis)]; }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const { return false; }
+};
+using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, View>, View, 3, std::uint32_t>;
+
+/// A result set that stops the search at the first neighbor of the right color.
+class FirstRightColor {
+ public:
+  FirstRightColor(const PointCloud& cloud, const cmap::RgbF& color) : cloud_(cloud), color_(color) {}
+  bool found() const { return found_; }
+
+  // nanoflann's interface
+  bool full() const { return true; }
+  std::size_t size() const { return found_ ? 1 : 0; }
+  float worstDist() const { return static_cast<float>(kRadius_m * kRadius_m); }
+  bool addPoint(float sq_dist, std::uint32_t index) {
+    if (sq_dist > worstDist()) return true;
+    const cmap::RgbF c = cmap::rgb_255(cloud_.colors, index);
+    const float dr = c[0] - color_[0], dg = c[1] - color_[1], db = c[2] - color_[2];
+    found_ = dr * dr + dg * dg + db * db <= static_cast<float>(3 * kTau * 255 * 3 * kTau * 255);
+    return !found_;
+  }
+
+ private:
+  const PointCloud& cloud_;
+  cmap::RgbF color_;
+  bool found_ = false;
+};
+
+void recall_nanoflann_early_exit(benchmark::State& state) {
+  const auto& town = cmap::benchmarks::town(state.range(0), false);
+  const View view{town.estimate};
+  Tree tree(3, view, nanoflann::KDTreeSingleIndexAdaptorParams(16));
+  tree.buildIndex();
+  std::uint64_t n_recalled = 0;
+  for (auto _ : state) {
+    n_recalled = 0;
+    for (std::size_t j = 0; j < town.reference.size(); ++j) {
+      FirstRightColor result(town.estimate, cmap::rgb_255(town.reference.colors, j));
+      tree.findNeighbors(result, town.reference.positions[j].data(), nanoflann::SearchParams());
+      n_recalled += result.found() ? 1 : 0;
+    }
+  }
+  state.counters["recalled"] = static_cast<double>(n_recalled);
+}
+
+void entropy_nanoflann(benchmark::State& state) {
+  const auto& cloud = cmap::benchmarks::town(state.range(0), false).estimate;
+  const View view{cloud};
+  Tree tree(3, view, nanoflann::KDTreeSingleIndexAdaptorParams(16));
+  tree.buildIndex();
+  std::uint64_t n_valid = 0;
+  for (auto _ : state) {
+    n_valid = 0;
+    std::vector<std::pair<std::uint32_t, float>> found;
+    for (const auto& q : cloud.positions) {
+      tree.radiusSearch(q.data(), static_cast<float>(kEntropyRadius_m * kEntropyRadius_m), found, nanoflann::SearchParams(32, 0, false));
+      if (found.size() < 11) continue;
+      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+      Eigen::Matrix3d sum_sq = Eigen::Matrix3d::Zero();
+      for (const auto& [i, sq_dist] : found) {
+        const Eigen::Vector3d d = cloud.positions[i].cast<double>() - q.cast<double>();
+        sum += d;
+        sum_sq += d * d.transpose();
+      }
+      const auto n = static_cast<double>(found.size() - 1);
+      n_valid += ((sum_sq - sum * sum.transpose() / n) / (n - 1.0)).determinant() > 0.0 ? 1 : 0;
+    }
+  }
+  state.counters["valid"] = static_cast<double>(n_valid);
+}
+
+#endif
+
+void sizes(benchmark::internal::Benchmark* b) {
+  b->ArgNames({"points"})->Unit(benchmark::kSecond)->MeasureProcessCPUTime()->Arg(1'000'000)->Arg(10'000'000);
+}
+
+BENCHMARK(recall_cmap)->Apply(sizes);
+BENCHMARK(entropy_cmap)->Apply(sizes);
+#ifdef CMAP_WITH_NANOFLANN
+BENCHMARK(recall_nanoflann_early_exit)->Apply(sizes);
+BENCHMARK(entropy_nanoflann)->Apply(sizes);
+#endif
+
+}  // namespace
+
+BENCHMARK_MAIN();

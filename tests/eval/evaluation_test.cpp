@@ -1,0 +1,338 @@
+#include "cmap/eval/evaluation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "cmap/core/parallel.hpp"
+#include "eval/eval_testing.hpp"
+
+namespace cmap {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using test::gray_map;
+using test::kNone;
+using test::options_for;
+using test::painted_sheet;
+using test::refusal_of;
+using test::small_map;
+using test::warning_ids;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// Values found by hand: distances 0.25 and 3 one way; 0.25, 3 and 5 the other.
+const PointCloud kReference = small_map({{0, 0, 0}, {8, 0, 0}, {0, 5.25f, 0}}, {Rgb8{0, 0, 0}, Rgb8{0, 255, 0}, Rgb8{0, 0, 0}});
+const PointCloud kEstimate = small_map({{0, 0.25f, 0}, {8, 3, 0}}, {Rgb8{0, 0, 0}, Rgb8{0, 0, 0}});
+
+Json fields(const Evaluation& evaluation, std::string_view id) {
+  const MetricRecord* record = evaluation.find(id);
+  return record == nullptr ? Json() : record->fields;
+}
+
+std::vector<std::string> ids(const Evaluation& evaluation) {
+  std::vector<std::string> result;
+  for (const MetricRecord& record : evaluation.metrics) result.emplace_back(record.info->id);
+  return result;
+}
+
+/// Everything that was found, with the options of every kind of metric.
+Json everything(const Evaluation& evaluation) {
+  Json all;
+  for (const MetricRecord& record : evaluation.metrics) all[record.info->id] = record.fields;
+  all["aliases"] = evaluation.aliases;
+  all["overlap"] = evaluation.overlap;
+  all["rmse_m"] = evaluation.rmse_m;
+  for (const Warning& warning : evaluation.warnings) all["warnings"][warning.id] = warning.message;
+  return all;
+}
+
+EvaluationOptions all_options() {
+  EvaluationOptions options = options_for({"all"});
+  options.lcr_curve = true;
+  options.as = {"mapeval", "open3d", "mpeg", "cloudcompare"};
+  options.mme_radius_m = 0.3;
+  options.ccs_voxel_m = 0.5;
+  return options;
+}
+
+TEST(Evaluation, HandComputed) {
+  const Evaluation found = evaluate(kReference, kEstimate, EvaluationOptions{});
+  EXPECT_EQ(fields(found, "chamfer").at("value"), 3.25 / 2 + 8.25 / 3);
+  EXPECT_EQ(fields(found, "overlap").at("value"), 0.5);
+  EXPECT_EQ(fields(found, "hausdorff").at("value"), 5.0);
+  EXPECT_EQ(fields(found, "local_color_recall").at("value"), 1.0 / 3);
+  EXPECT_EQ(fields(found, "color_distance").at("reference_to_estimate"), 1.0 / 3);
+  EXPECT_EQ(found.overlap, 0.5);
+  EXPECT_EQ(found.rmse_m, std::sqrt(9.0625 / 2));
+}
+
+TEST(Evaluation, RecordsAreThoseAskedForInTheCatalogsOrder) {
+  EXPECT_THAT(ids(evaluate(kReference, kEstimate, options_for({"rmse", "chamfer"}))), ElementsAre("chamfer", "rmse"));
+  EXPECT_THAT(ids(evaluate(kReference, kEstimate, options_for({"mme"}))), ElementsAre("mean_map_entropy"));
+  std::vector<std::string> all;
+  for (const MetricInfo& metric : metric_catalog()) all.emplace_back(metric.id);
+  EXPECT_EQ(ids(evaluate(kReference, kEstimate, options_for({"all"}))), all);
+}
+
+TEST(Evaluation, NothingElseIsComputed) {
+  const Evaluation found = evaluate(kReference, kEstimate, options_for({"chamfer"}));
+  EXPECT_FALSE(found.recall.has_value());
+  EXPECT_TRUE(found.aliases.is_null());
+  EXPECT_EQ(warning_ids(found.warnings), kNone) << "no voxel qualifies for AWD, but nobody asked";
+  EXPECT_EQ(found.find("rmse"), nullptr);
+  EXPECT_TRUE(evaluate(kReference, kEstimate, options_for({"local_color_recall"})).recall.has_value());
+}
+
+TEST(Evaluation, EveryStageIsTimedAndReportedInOrder) {
+  std::vector<std::string> stages;
+  double last = 0.0;
+  const Evaluation found = evaluate(kReference, kEstimate, EvaluationOptions{}, Eigen::Matrix4d::Identity(),
+                                    [&](std::string_view stage, double done) {
+                                      stages.emplace_back(stage);
+                                      EXPECT_GE(done, last);
+                                      EXPECT_LE(done, 1.0);
+                                      last = done;
+                                    });
+  std::vector<std::string> timed;
+  for (const auto& [stage, seconds] : found.stage_seconds) {
+    timed.push_back(stage);
+    EXPECT_GE(seconds, 0.0);
+  }
+  EXPECT_EQ(timed, stages);
+  EXPECT_THAT(timed, Contains("nearest neighbors"));
+}
+
+TEST(Evaluation, OptionsReachTheirMetrics) {
+  EvaluationOptions options = options_for({"all"});
+  options.thresholds_m = {3.0, 0.25};
+  options.overlap_distance_m = 4.0;
+  options.lcr_tau = 0.5;
+  options.lcr_radius_m = 3.0;
+  options.ccs_voxel_m = 16.0;
+  options.color_max_distance_m = 1.0;
+  const Evaluation found = evaluate(kReference, kEstimate, options);
+  const Json fitness = fields(found, "fitness").at("per_threshold");
+  ASSERT_EQ(fitness.size(), 2U);
+  EXPECT_EQ(fitness[0].at("value"), 1.0) << "thresholds are inclusive";
+  EXPECT_EQ(fitness[1].at("value"), 0.5);
+  EXPECT_EQ(fields(found, "overlap").at("value"), 1.0);
+  EXPECT_EQ(fields(found, "overlap").at("parameters").at("overlap_distance_m"), 4.0);
+  EXPECT_EQ(fields(found, "local_color_recall").at("value"), 2.0 / 3) << "3 tau = 1.5: any color within 3 m";
+  EXPECT_EQ(fields(found, "local_color_recall").at("parameters"), Json({{"tau", 0.5}, {"radius_m", 3.0}}));
+  EXPECT_EQ(fields(found, "color_consistency").at("n_voxels"), 1);
+  EXPECT_EQ(fields(found, "color_distance").at("n_unmatched_reference"), 2);
+  EXPECT_EQ(found.options.lcr_tau, 0.5);
+}
+
+TEST(Evaluation, MapsWithThemselvesArePerfect) {
+  const PointCloud map = painted_sheet(3000, 1);
+  EvaluationOptions options;
+  options.awd_min_points = 20;
+  const Evaluation found = evaluate(map, map, options);
+  EXPECT_EQ(fields(found, "chamfer").at("value"), 0.0);
+  EXPECT_EQ(fields(found, "color_distance").at("value"), 0.0);
+  EXPECT_EQ(fields(found, "local_color_recall").at("value"), 1.0);
+  EXPECT_EQ(fields(found, "average_wasserstein").at("value"), 0.0);
+  for (const Json& entry : fields(found, "f_score").at("per_threshold")) EXPECT_EQ(entry.at("value"), 1.0);
+  EXPECT_TRUE(fields(found, "color_fidelity").at("value").is_null());
+  EXPECT_THAT(warning_ids(found.warnings), Contains("color_fidelity_infinite"));
+}
+
+TEST(Evaluation, AnExactColorIsWarnedOfOnlyWhereFidelityIsAskedFor) {
+  EXPECT_EQ(warning_ids(evaluate(kReference, kReference, options_for({"color_distance"})).warnings), kNone);
+}
+
+TEST(Evaluation, MapsWithoutColorGetNullsAndAWarning) {
+  const PointCloud bare_reference = small_map({{0, 0, 0}}), bare_estimate = small_map({{0, 0, 1}});
+  const std::pair<std::pair<PointCloud, PointCloud>, std::string> cases[] = {
+      {{bare_reference, kEstimate}, "the reference has no color"},
+      {{kReference, bare_estimate}, "the estimate has no color"},
+      {{bare_reference, bare_estimate}, "both maps have no color"}};
+  for (const auto& [maps, says] : cases) {
+    const Evaluation found = evaluate(maps.first, maps.second, EvaluationOptions{});
+    ASSERT_THAT(warning_ids(found.warnings), Contains("no_color"));
+    EXPECT_THAT(found.warnings[0].message, HasSubstr(says));
+    for (const char* id : {"color_distance", "color_fidelity", "local_color_recall", "color_consistency"}) {
+      EXPECT_TRUE(fields(found, id).at("value").is_null()) << id;
+    }
+    EXPECT_TRUE(fields(found, "chamfer").at("value").is_number());
+    EXPECT_FALSE(found.recall.has_value());
+  }
+}
+
+TEST(Evaluation, ColorThatIsAskedForByNameIsRequired) {
+  const PointCloud bare = small_map({{0, 0, 0}});
+  for (const char* name : {"color", "color+", "delta_e"}) {
+    EXPECT_THAT(refusal_of<UnsupportedError>([&] { evaluate(kReference, bare, options_for({name})); }),
+                HasSubstr("the estimate has no color"))
+        << name;
+  }
+  EXPECT_EQ(warning_ids(evaluate(bare, bare, options_for({"geometry"})).warnings), kNone) << "nobody asked for color";
+}
+
+TEST(Evaluation, NoOverlapIsAScoreAndAWarning) {
+  PointCloud far = kEstimate;
+  far.origin = {100, 0, 0};
+  const Evaluation found = evaluate(kReference, far, EvaluationOptions{});
+  EXPECT_EQ(found.overlap, 0.0);
+  EXPECT_EQ(fields(found, "overlap").at("value"), 0.0);
+  EXPECT_TRUE(fields(found, "accuracy").at("per_threshold")[0].at("value").is_null());
+  EXPECT_THAT(warning_ids(found.warnings), Contains("no_overlap"));
+  EXPECT_THAT(warning_ids(found.warnings), Contains("units_or_frame_mismatch"));
+  EXPECT_THAT(warning_ids(found.warnings), Not(Contains("precision_reduced")));
+}
+
+TEST(Evaluation, MapsAMillionMetersApart) {
+  PointCloud far = kReference;
+  far.origin = {1e6, 0, 0};
+  const Evaluation found = evaluate(kReference, far, EvaluationOptions{});
+  EXPECT_THAT(warning_ids(found.warnings), Contains("precision_reduced"));
+  // (8, 0, 0) is nearest to all of the far map, whose own nearest is (1e6, 0, 0), its last point 5.25 m aside.
+  EXPECT_NEAR(fields(found, "hausdorff").at("value"), 1e6, 1.0);
+  EXPECT_NEAR(found.rmse_m, 1e6, 10.0);
+  EXPECT_EQ(fields(found, "color_consistency").at("n_voxels_below_min"), 3) << "one-cloud metrics are not rounded";
+}
+
+TEST(Evaluation, OnePointMaps) {
+  const Evaluation found = evaluate(gray_map({{0, 0, 0}}), gray_map({{0, 0, 0.5f}}), options_for({"all"}));
+  EXPECT_EQ(fields(found, "chamfer").at("value"), 1.0);
+  EXPECT_EQ(fields(found, "local_color_recall").at("value"), 1.0);
+  for (const char* id : {"color_consistency", "average_wasserstein", "spatial_consistency", "mean_map_entropy"}) {
+    EXPECT_TRUE(fields(found, id).at("value").is_null()) << id;
+  }
+}
+
+TEST(Evaluation, WhatNothingQualifiesForIsNullWithAWarning) {
+  EvaluationOptions options = options_for({"color_consistency", "distribution", "mme"});
+  options.awd_min_points = options.ccs_min_points = 1000;
+  const Evaluation found = evaluate(painted_sheet(900, 1), painted_sheet(900, 2), options);
+  for (const MetricRecord& record : found.metrics) EXPECT_TRUE(record.fields.at("value").is_null()) << record.info->id;
+  EXPECT_THAT(warning_ids(found.warnings), ElementsAre("color_consistency_no_voxels", "average_wasserstein_no_voxels",
+                                                       "mean_map_entropy_no_points"));
+  EXPECT_THAT(found.warnings[1].message, HasSubstr("no 3 m voxel holds 1000 points of both maps"));
+}
+
+TEST(Evaluation, OneQualifyingVoxelHasNoSpatialConsistency) {
+  EvaluationOptions options = options_for({"distribution"});
+  options.awd_voxel_m = 1000.0;
+  PointCloud reference = test::uniform_cloud(500, 1), estimate = test::uniform_cloud(500, 2);
+  const Evaluation found = evaluate(reference, estimate, options);
+  EXPECT_EQ(fields(found, "average_wasserstein").at("n_voxels"), 1);
+  EXPECT_TRUE(fields(found, "spatial_consistency").at("value").is_null());
+  EXPECT_THAT(warning_ids(found.warnings), ElementsAre("spatial_consistency_no_voxels"));
+}
+
+TEST(Evaluation, TheTransformIsRecorded) {
+  Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
+  T(1, 3) = -0.25;
+  const Evaluation found = evaluate(kReference, kEstimate, options_for({"geometry"}), T);
+  EXPECT_EQ(found.T_ref_est, T);
+  EXPECT_EQ(fields(found, "chamfer").at("estimate_to_reference"), 2.75 / 2) << "(0, 0, 0) and (8, 2.75, 0)";
+}
+
+TEST(Evaluation, CropAndThinningAreWhatIsCompared) {
+  EvaluationOptions options = options_for({"geometry"});
+  options.crop = Box3d{{-1, -1, -1}, {9, 4, 1}};
+  options.voxel_m = 100.0;
+  const Evaluation found = evaluate(kReference, kEstimate, options);
+  EXPECT_EQ(found.pair.reference.size(), 1U);
+  EXPECT_EQ(fields(found, "chamfer").at("value"), 2 * std::hypot(0.0, 1.625)) << "(4, 0, 0) and (4, 1.625, 0)";
+}
+
+TEST(Evaluation, OtherToolsAreAddedByName) {
+  EvaluationOptions options = options_for({"chamfer"});
+  options.as = {"cloudcompare", "mpeg"};
+  const Evaluation found = evaluate(kReference, kEstimate, options);
+  EXPECT_EQ(found.aliases.size(), 2U);
+  EXPECT_EQ(found.aliases.at("cloudcompare").at("mean"), 1.625);
+  EXPECT_TRUE(found.aliases.at("mpeg").at("symmetric").is_object());
+  const Evaluation bare = evaluate(small_map({{0, 0, 0}}), kEstimate, options);
+  EXPECT_TRUE(bare.aliases.at("mpeg").is_null());
+  EXPECT_THAT(warning_ids(bare.warnings), Contains("mpeg_needs_color"));
+}
+
+TEST(Evaluation, BrokenMapsAreInputErrors) {
+  EXPECT_THAT(refusal_of<InputError>([] { evaluate({}, kEstimate, EvaluationOptions{}); }), HasSubstr("the reference has no points"));
+  EXPECT_THAT(refusal_of<InputError>([] { evaluate(kReference, gray_map({{NAN, 0, 0}}), EvaluationOptions{}); }),
+              HasSubstr("the estimate has a point that is not finite"));
+}
+
+TEST(Evaluation, VoxelsTooSmallForTheMapAreRefused) {
+  for (double EvaluationOptions::*voxel : {&EvaluationOptions::ccs_voxel_m, &EvaluationOptions::awd_voxel_m}) {
+    EvaluationOptions options;
+    options.*voxel = 1e-10;
+    EXPECT_THAT(refusal_of<UsageError>([&] { evaluate(kReference, kEstimate, options); }), HasSubstr("voxel"));
+  }
+  EvaluationOptions thinned;
+  thinned.voxel_m = 1e-10;
+  EXPECT_THAT(refusal_of<UsageError>([&] { evaluate(kReference, kEstimate, thinned); }), HasSubstr("voxel"));
+}
+
+TEST(Evaluation, IsBitwiseTheSameForAnyNumberOfThreads) {
+  // More than one chunk of every parallel loop.
+  const PointCloud reference = painted_sheet(kLoopChunk + 5000, 1), estimate = painted_sheet(kLoopChunk + 1000, 2);
+  std::vector<std::string> found;
+  for (int threads : {1, 2, 3, 8}) {
+    const ThreadLimit limit(threads);
+    found.push_back(everything(evaluate(reference, estimate, all_options())).dump());
+  }
+  for (const std::string& other : found) EXPECT_EQ(other, found.front());
+}
+
+PointCloud reversed(const PointCloud& map) {
+  PointCloud result = map;
+  std::ranges::reverse(result.positions);
+  std::ranges::reverse(std::get<Array<Rgb8>>(result.colors));
+  return result;
+}
+
+/// The same structure, and numbers that differ by their summation at most.
+void expect_equal_numbers(const Json& a, const Json& b, const std::string& place) {
+  ASSERT_EQ(a.type(), b.type()) << place;
+  if (a.is_number_float()) {
+    EXPECT_NEAR(a.get<double>(), b.get<double>(), 1e-11 * std::abs(a.get<double>())) << place;
+  } else if (a.is_structured()) {
+    ASSERT_EQ(a.size(), b.size()) << place;
+    for (auto x = a.items().begin(), y = b.items().begin(); x != a.items().end(); ++x, ++y) {
+      expect_equal_numbers(x.value(), y.value(), place + "/" + x.key());
+    }
+  } else {
+    EXPECT_EQ(a, b) << place;
+  }
+}
+
+TEST(Evaluation, TheOrderOfThePointsDoesNotMatter) {
+  const PointCloud reference = painted_sheet(5000, 1), estimate = painted_sheet(4000, 2);
+  expect_equal_numbers(everything(evaluate(reference, estimate, all_options())),
+                       everything(evaluate(reversed(reference), reversed(estimate), all_options())), "");
+}
+
+TEST(Evaluation, FlannFindsTheSame) {
+  const PointCloud reference = painted_sheet(5000, 1), estimate = painted_sheet(4000, 2);
+  EvaluationOptions flann = all_options();
+  flann.index = IndexKind::kFlann;
+  expect_equal_numbers(everything(evaluate(reference, estimate, all_options())),
+                       everything(evaluate(reference, estimate, flann)), "");
+}
+
+TEST(Evaluation, NoRecordHoldsANumberThatIsNotFinite) {
+  // JSON has no NaN: nlohmann writes null for it, and a reader of the library would see it.
+  const std::function<void(const Json&, const std::string&)> check = [&](const Json& value, const std::string& place) {
+    if (value.is_number_float()) {
+      EXPECT_TRUE(std::isfinite(value.get<double>())) << place;
+    } else if (value.is_structured()) {
+      for (const auto& [key, item] : value.items()) check(item, place + "/" + key);
+    }
+  };
+  PointCloud far = kEstimate;
+  far.origin = {100, 0, 0};
+  for (const PointCloud& estimate : {kEstimate, kReference, far, gray_map({{0, 0, 0}})}) {
+    check(everything(evaluate(kReference, estimate, all_options())), "");
+  }
+}
+
+}  // namespace
+}  // namespace cmap

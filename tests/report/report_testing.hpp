@@ -1,0 +1,27 @@
+#pragma once
+
+// Reports for the tests, of small maps.
+
+#include "cmap/report/report.hpp"
+#include "eval/eval_testing.hpp"
+
+namespace cmap::test {
+
+inline InputDescription described(const std::string& path, const PointCloud& map) {
+  const FileInfo info{path, "PLY ascii", map.size(), map.size(), std::string(64, 'a'), {}};
+  return describe({map, info});
+}
+
+inline RunDescription a_run() {
+  return {"cmap_eval ref.ply est.ply", "2024-05-06T07:08:09Z", 1.5, {{"read", 0.5}, {"index", 1.0}}, 2, "avx2"};
+}
+
+/// The report of this pair.
+inline nlohmann::ordered_json report_of(const PointCloud& reference, const PointCloud& estimate,
+                                        const EvaluationOptions& options = {},
+                                        const Eigen::Matrix4d& T_ref_est = Eigen::Matrix4d::Identity()) {
+  return make_report(described("ref.ply", reference), described("est.ply", estimate),
+                     evaluate(reference, estimate, options, T_ref_est), a_run());
+}
+
+}  // namespace cmap::test

@@ -1,0 +1,183 @@
+#include <algorithm>
+#include <regex>
+#include <sstream>
+
+#include "report/report_testing.hpp"
+
+namespace cmap {
+namespace {
+
+using test::gray_map;
+using test::options_for;
+using test::painted_sheet;
+using test::report_of;
+using test::small_map;
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+std::vector<std::string> lines_of(const std::string& table) {
+  std::vector<std::string> lines;
+  std::istringstream stream(table);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+/// The first line with this text; fails the test if there is none.
+std::string line_with(const std::string& table, const std::string& text) {
+  for (const std::string& line : lines_of(table)) {
+    if (line.find(text) != std::string::npos) return line;
+  }
+  ADD_FAILURE() << "no line with \"" << text << "\" in\n" << table;
+  return {};
+}
+
+/// Characters before a byte of a UTF-8 text.
+std::ptrdiff_t column_of(const std::string& line, std::size_t byte) {
+  return std::count_if(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(byte),
+                       [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; });
+}
+
+std::string full_table() {
+  EvaluationOptions options = options_for({"all"});
+  options.mme_radius_m = 0.5;
+  options.awd_min_points = 20;
+  return format_table(report_of(painted_sheet(4000, 1), painted_sheet(3000, 2), options));
+}
+
+TEST(Table, StartsWithBothMaps) {
+  const std::string table = format_table(report_of(painted_sheet(4000, 1), painted_sheet(3000, 2)));
+  EXPECT_THAT(table, StartsWith("reference ref.ply: 4,000 points, PLY ascii, color u8\n"
+                                "estimate  est.ply: 3,000 points, PLY ascii, color u8\n"));
+}
+
+TEST(Table, ShowsEveryMetricUnderItsGroup) {
+  const std::string table = full_table();
+  std::size_t place = 0;
+  for (const char* text : {"\ncolor\n", "color distance", "CF", "LCR", "CCS", "\ncolor+\n", "dE00", "CD at 0 to 0.05 m",
+                           "CD at 0.5 to 1 m", "exposure-free", "PSNR", "\ngeometry\n", "Chamfer distance", "accuracy @ 0.2 m",
+                           "@ 0.01 m", "fitness (precision) @ 0.2 m", "completeness (recall) @ 0.2 m", "F-score @ 0.2 m",
+                           "Overlap", "Hausdorff", "RMSE", "\ndistribution\n", "AWD", "SCS", "\nentropy\n", "MME"}) {
+    place = table.find(text, place);
+    ASSERT_NE(place, std::string::npos) << text << " in\n" << table;
+  }
+}
+
+TEST(Table, ArrowsStandInOneColumn) {
+  std::ptrdiff_t column = -1;
+  int rows = 0;
+  for (const std::string& line : lines_of(full_table())) {
+    const std::size_t arrow = std::min(line.find("↓"), line.find("↑"));
+    if (arrow == std::string::npos) continue;
+    if (rows++ == 0) column = column_of(line, arrow);
+    EXPECT_EQ(column_of(line, arrow), column) << line;
+  }
+  EXPECT_EQ(rows, 39) << "8 metrics of color, one of them 5 ranges, 8 of geometry, 4 of them 5 thresholds, 2, and 1";
+}
+
+TEST(Table, ValuesEndInOneColumn) {
+  std::ptrdiff_t column = -1;
+  for (const std::string& line : lines_of(full_table())) {
+    std::smatch match;
+    if (!std::regex_search(line, match, std::regex("(?:↓|↑) +[-+0-9.e]+( %)?"))) continue;
+    const std::ptrdiff_t end = column_of(line, static_cast<std::size_t>(match.position() + match.length()));
+    if (column < 0) column = end;
+    EXPECT_EQ(end, column) << line;
+  }
+  EXPECT_GT(column, 0);
+}
+
+TEST(Table, DirectionsPointTheRightWay) {
+  const std::string table = full_table();
+  for (const char* lower : {"CD ", "CCS", "CD#", "AC", "RMSE", "AWD", "SCS", "MME"}) EXPECT_THAT(line_with(table, lower), HasSubstr("↓"));
+  for (const char* higher : {"CF", "LCR", "COM", "Overlap"}) EXPECT_THAT(line_with(table, higher), HasSubstr("↑"));
+}
+
+TEST(Table, RecallStandsBesideItsCoverage) {
+  // 2 of 4 points covered, 1 of them recalled.
+  const PointCloud reference = gray_map({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}});
+  const PointCloud estimate = small_map({{0, 0, 0}, {1, 0, 0}}, {Rgb8{128, 128, 128}, Rgb8{255, 0, 0}});
+  const std::string line = line_with(format_table(report_of(reference, estimate)), "LCR");
+  EXPECT_THAT(line, ContainsRegex("25.00 % +coverage 50.00 %, of it 50.00 % +tau 0.1, r 0.5 m"));
+}
+
+TEST(Table, ParametersThatMatterAreShown) {
+  const std::string table = full_table();
+  EXPECT_THAT(line_with(table, "CCS"), ContainsRegex("voxels of 0.2 m, >= 2 points"));
+  EXPECT_THAT(line_with(table, "AWD"), ContainsRegex("voxels of 3 m, >= 20 points"));
+  EXPECT_THAT(line_with(table, "Overlap"), HasSubstr("within 1 m"));
+  EXPECT_THAT(line_with(table, "SCS"), HasSubstr("within 5 voxels"));
+  EXPECT_THAT(line_with(table, "MME"), HasSubstr("r 0.5 m"));
+}
+
+TEST(Table, UnitsFollowTheirValues) {
+  const std::string table = full_table();
+  EXPECT_THAT(line_with(table, "Chamfer"), ContainsRegex("[0-9] m "));
+  EXPECT_THAT(line_with(table, " CF "), ContainsRegex("[0-9] dB"));
+  EXPECT_THAT(line_with(table, "color distance  "), ContainsRegex("[0-9] unit RGB "));
+  EXPECT_THAT(line_with(table, "MME"), ContainsRegex("[0-9] nats"));
+}
+
+TEST(Table, FourSignificantDigits) {
+  const auto chamfer_shown = [](float distance) {
+    return line_with(format_table(report_of(gray_map({{0, 0, 0}}), gray_map({{0, 0, distance}}), options_for({"rmse"}))), "RMSE");
+  };
+  EXPECT_THAT(chamfer_shown(0.0f), ContainsRegex("↓ +0 m"));
+  EXPECT_THAT(chamfer_shown(1.0f), ContainsRegex("↓ +1.000 m"));
+  EXPECT_THAT(chamfer_shown(0.0123456f), ContainsRegex("↓ +0.01235 m"));
+  EXPECT_THAT(chamfer_shown(123.456f), ContainsRegex("↓ +123.5 m"));
+  EXPECT_THAT(chamfer_shown(999.96f), ContainsRegex("↓ +1000 m")) << "rounding adds a digit, not a decimal";
+  EXPECT_THAT(chamfer_shown(123456.0f), ContainsRegex("↓ +123456 m"));
+  EXPECT_THAT(chamfer_shown(0.000012345f), ContainsRegex("↓ +1.23[45]e-05 m"));
+}
+
+TEST(Table, MissingValuesAreADash) {
+  EvaluationOptions options = options_for({"all"});
+  options.as = {"mapeval", "open3d", "mpeg", "cloudcompare"};
+  const std::string table = format_table(report_of(small_map({{0, 0, 0}}), small_map({{100, 0, 0}}), options));
+  for (const char* symbol : {" CD ", " LCR ", " CCS ", " AC ", " AWD ", " MME "}) {
+    EXPECT_THAT(line_with(table, symbol), ContainsRegex("(↓|↑) +-( |$)"));
+  }
+  for (const char* bad : {" nan", "NaN", " inf", "null"}) {
+    EXPECT_THAT(table.substr(0, table.find("\nwarnings\n")), Not(HasSubstr(bad)));
+  }
+}
+
+TEST(Table, OtherToolsFollowByName) {
+  EvaluationOptions options = options_for({"chamfer"});
+  options.as = {"cloudcompare", "open3d"};
+  const std::string table = format_table(report_of(gray_map({{0, 0, 0}}), gray_map({{0, 0, 0.5f}}), options));
+  EXPECT_LT(table.find("\nas cloudcompare\n"), table.find("\nas open3d\n"));
+  EXPECT_THAT(line_with(table, " mean "), ContainsRegex("mean +0.5"));
+  EXPECT_THAT(line_with(table, "@ 0.2 m fitness"), ContainsRegex(" 0(.0)?$"));
+}
+
+TEST(Table, WarningsStandAtTheEnd) {
+  const std::string table = format_table(report_of(gray_map({{0, 0, 0}, {1, 0, 0}}), gray_map({{50, 0, 0}, {51, 0, 0}})));
+  const std::vector<std::string> lines = lines_of(table);
+  const auto heading = std::ranges::find(lines, "warnings");
+  ASSERT_NE(heading, lines.end());
+  EXPECT_GT(std::distance(heading, lines.end()), 2);
+  for (auto line = heading + 1; line != lines.end(); ++line) EXPECT_THAT(*line, ContainsRegex("^  [a-z_]+: .+"));
+  EXPECT_THAT(table, HasSubstr("\n  no_overlap: no estimated point is within the overlap distance of the reference\n"));
+}
+
+TEST(Table, HasNoWarningsWhereThereAreNone) {
+  EXPECT_THAT(format_table(report_of(gray_map({{0, 0, 0}}), gray_map({{0, 0, 0.5f}}), options_for({"geometry"}))),
+              Not(HasSubstr("warnings")));
+}
+
+TEST(Table, HasNoTrailingBlanks) {
+  for (const std::string& line : lines_of(full_table())) {
+    EXPECT_TRUE(line.empty() || line.back() != ' ') << "\"" << line << "\"";
+  }
+}
+
+TEST(Table, IsMadeFromASavedReport) {
+  const nlohmann::ordered_json report = report_of(painted_sheet(400, 1), painted_sheet(300, 2), options_for({"all"}));
+  EXPECT_EQ(format_table(nlohmann::ordered_json::parse(report.dump())), format_table(report));
+}
+
+}  // namespace
+}  // namespace cmap
