@@ -22,10 +22,12 @@ std::string digits(const Json& value) {
   return fmt::format("{:.{}f}", v, std::max(0, 4 - before_point));
 }
 
-/// A share as a percentage.
-std::string percent(const Json& value) {
-  return value.is_number() ? fmt::format("{:.2f} %", 100.0 * value.get<double>()) : std::string(kMissing);
+/// A share in percent, without the sign.
+std::string hundredths(const Json& value) {
+  return value.is_number() ? fmt::format("{:.2f}", 100.0 * value.get<double>()) : std::string(kMissing);
 }
+
+std::string percent(const Json& value) { return value.is_number() ? hundredths(value) + " %" : std::string(kMissing); }
 
 std::string with_thousands(const Json& count) {
   std::string text = std::to_string(count.get<std::uint64_t>());
@@ -91,15 +93,12 @@ std::string unit_of(const MetricInfo& info) { return info.unit == "1" ? "" : std
 
 std::string value_rows(const MetricInfo& info, const Json& metric) {
   const bool share = is_share(info);
-  const auto shown = [&](const Json& value) { return share ? percent(value) : digits(value); };
+  const auto shown = [&](const Json& value) { return share ? hundredths(value) : digits(value); };
+  const std::string unit = share ? "%" : unit_of(info);
   if (metric.contains("per_threshold")) {
-    std::string rows;
-    for (const Json& entry : metric.at("per_threshold")) {
-      const std::string title = fmt::format("{} @ {}", rows.empty() ? info.title : "", meters(entry.at("threshold_m")));
-      rows += row(rows.empty() ? title : fmt::format("{:>{}}", title, info.title.size() + title.size()), metric,
-                  shown(entry.at("value")), unit_of(info), "");
-    }
-    return rows;
+    std::string values;
+    for (const Json& entry : metric.at("per_threshold")) values += fmt::format(" {:>10}", shown(entry.at("value")));
+    return row(info.title, metric, values, unit, "");
   }
   if (metric.contains("per_range")) {
     std::string rows;
@@ -109,7 +108,14 @@ std::string value_rows(const MetricInfo& info, const Json& metric) {
     }
     return rows;
   }
-  return row(info.title, metric, shown(metric.at("value")), unit_of(info), remark(info, metric));
+  return row(info.title, metric, shown(metric.at("value")), unit, remark(info, metric));
+}
+
+/// The thresholds above the columns of the metrics that have one value for each.
+std::string threshold_line(const Json& metric) {
+  std::string line(44, ' ');  // where row() puts the value
+  for (const Json& entry : metric.at("per_threshold")) line += fmt::format(" {:>10}", "<= " + meters(entry.at("threshold_m")));
+  return line + "\n";
 }
 
 std::string input_line(const char* which, const Json& input) {
@@ -121,7 +127,9 @@ std::string input_line(const char* which, const Json& input) {
 std::string alias_lines(const std::string& prefix, const Json& value) {
   if (value.is_object()) {
     std::string lines;
-    for (const auto& [key, item] : value.items()) lines += alias_lines(fmt::format("{} {}", prefix, key), item);
+    for (const auto& [key, item] : value.items()) {
+      lines += alias_lines(key == "per_threshold" ? prefix : fmt::format("{} {}", prefix, key), item);
+    }
     return lines;
   }
   if (value.is_array() && !value.empty() && value.front().is_object()) {
@@ -134,7 +142,7 @@ std::string alias_lines(const std::string& prefix, const Json& value) {
     }
     return lines;
   }
-  return fmt::format("  {} {}\n", padded(prefix, 46), value.is_string() ? value.get<std::string>() : value.dump());
+  return fmt::format(" {} {}\n", padded(prefix, 41), value.is_string() ? value.get<std::string>() : value.dump());
 }
 
 }  // namespace
@@ -143,11 +151,15 @@ std::string format_table(const Json& report) {
   std::string table = input_line("reference", report.at("inputs").at("reference")) +
                       input_line("estimate", report.at("inputs").at("estimate"));
   std::string_view group;
+  bool thresholds_shown = false;
   for (const MetricInfo& info : metric_catalog()) {
     if (!report.at("metrics").contains(info.id)) continue;
     if (info.group != group) table += fmt::format("\n{}\n", info.group == "mme" ? "entropy" : info.group);
     group = info.group;
-    table += value_rows(info, report.at("metrics").at(info.id));
+    const Json& metric = report.at("metrics").at(info.id);
+    if (info.per_threshold && !thresholds_shown) table += threshold_line(metric);
+    thresholds_shown = info.per_threshold;
+    table += value_rows(info, metric);
   }
   if (report.contains("aliases")) {
     for (const auto& [tool, record] : report.at("aliases").items()) table += fmt::format("\nas {}\n{}", tool, alias_lines("", record));

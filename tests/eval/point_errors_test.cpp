@@ -146,13 +146,17 @@ TEST(PointErrors, KeepLargeCoordinates) {
   EXPECT_THAT(columns.values.at("scalar_distance_m"), ElementsAre(3, 0.25));
 }
 
-TEST(PointErrors, FloatColorsOutsideTheUnitCubeAreClamped) {
+TEST(PointErrors, WriteColorsOfAnyStorageAs8Bit) {
   PointCloud estimate = small_map({{0, 0, 0}});
-  estimate.colors = Array<RgbF>{{1.5f, -0.5f, 0.2f}};
-  const Columns columns = estimate_errors(evaluate(kReference, estimate, EvaluationOptions{}));
-  EXPECT_THAT(columns.values.at("red"), ElementsAre(255));
-  EXPECT_THAT(columns.values.at("green"), ElementsAre(0));
-  EXPECT_THAT(columns.values.at("blue"), ElementsAre(51));
+  estimate.colors = Array<RgbF>{{1.0f, 0.0f, 0.2f}};
+  const Columns from_float = estimate_errors(evaluate(kReference, estimate, EvaluationOptions{}));
+  estimate.colors = Array<Rgb16>{{65535, 0, 51 * 257}};
+  const Columns from_16_bit = estimate_errors(evaluate(kReference, estimate, EvaluationOptions{}));
+  for (const Columns& columns : {from_float, from_16_bit}) {
+    EXPECT_THAT(columns.values.at("red"), ElementsAre(255));
+    EXPECT_THAT(columns.values.at("green"), ElementsAre(0));
+    EXPECT_THAT(columns.values.at("blue"), ElementsAre(51));
+  }
 }
 
 TEST(PointErrors, AnUnwritableFileIsNamed) {

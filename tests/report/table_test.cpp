@@ -120,16 +120,16 @@ TEST(Table, UnitsFollowTheirValues) {
 }
 
 TEST(Table, FourSignificantDigits) {
-  const auto chamfer_shown = [](float distance) {
+  const auto rmse_shown = [](float distance) {
     return line_with(format_table(report_of(gray_map({{0, 0, 0}}), gray_map({{0, 0, distance}}), options_for({"rmse"}))), "RMSE");
   };
-  EXPECT_THAT(chamfer_shown(0.0f), ContainsRegex("↓ +0 m"));
-  EXPECT_THAT(chamfer_shown(1.0f), ContainsRegex("↓ +1.000 m"));
-  EXPECT_THAT(chamfer_shown(0.0123456f), ContainsRegex("↓ +0.01235 m"));
-  EXPECT_THAT(chamfer_shown(123.456f), ContainsRegex("↓ +123.5 m"));
-  EXPECT_THAT(chamfer_shown(999.96f), ContainsRegex("↓ +1000 m")) << "rounding adds a digit, not a decimal";
-  EXPECT_THAT(chamfer_shown(123456.0f), ContainsRegex("↓ +123456 m"));
-  EXPECT_THAT(chamfer_shown(0.000012345f), ContainsRegex("↓ +1.23[45]e-05 m"));
+  EXPECT_THAT(rmse_shown(0.0f), ContainsRegex("↓ +0 m"));
+  EXPECT_THAT(rmse_shown(1.0f), ContainsRegex("↓ +1.000 m"));
+  EXPECT_THAT(rmse_shown(0.0123456f), ContainsRegex("↓ +0.01235 m"));
+  EXPECT_THAT(rmse_shown(123.456f), ContainsRegex("↓ +123.5 m"));
+  EXPECT_THAT(rmse_shown(999.96f), ContainsRegex("↓ +1000 m")) << "rounding adds a digit, not a decimal";
+  EXPECT_THAT(rmse_shown(123456.0f), ContainsRegex("↓ +123456 m"));
+  EXPECT_THAT(rmse_shown(0.000012345f), ContainsRegex("↓ +1.23[45]e-05 m"));
 }
 
 TEST(Table, MissingValuesAreADash) {
@@ -164,7 +164,7 @@ TEST(Table, WarningsStandAtTheEnd) {
 }
 
 TEST(Table, HasNoWarningsWhereThereAreNone) {
-  EXPECT_THAT(format_table(report_of(gray_map({{0, 0, 0}}), gray_map({{0, 0, 0.5f}}), options_for({"geometry"}))),
+  EXPECT_THAT(format_table(report_of(gray_map({{0, 0, 0}}), gray_map({{0, 0, 0}}), options_for({"geometry"}))),
               Not(HasSubstr("warnings")));
 }
 
