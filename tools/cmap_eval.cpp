@@ -49,15 +49,18 @@ void add_evaluation_options(CLI::App& app, Arguments& arguments) {
     std::string& text = arguments.option_texts[spec.name];
     const std::string flag = std::string("--") + spec.name;
     if (spec.kind == cmap::OptionKind::kFlag) {
-      app.add_flag_callback(flag, [&text] { text = "true"; }, spec.help)->group("Metrics");
+      app.add_flag_callback(
+             flag, [&text] { text = "true"; }, spec.help)
+          ->group("Metrics");
       continue;
     }
     const auto shown_default = spec.get(cmap::EvaluationOptions{});
     std::string help = spec.help;
     if (!shown_default.is_null() && !shown_default.empty()) {
-      help += shown_default.is_array() ? fmt::format(" [{}]", fmt::join(shown_default.get<std::vector<double>>(), ","))
-                                       : fmt::format(" [{}]", shown_default.is_string() ? shown_default.get<std::string>()
-                                                                                        : shown_default.dump());
+      help += shown_default.is_array()
+                  ? fmt::format(" [{}]", fmt::join(shown_default.get<std::vector<double>>(), ","))
+                  : fmt::format(" [{}]",
+                                shown_default.is_string() ? shown_default.get<std::string>() : shown_default.dump());
     }
     app.add_option(flag, text, help)->type_name(spec.placeholder)->group("Metrics");
   }
@@ -70,8 +73,10 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("--format", a.format, "what to print: table or json [table]")
       ->type_name("FORMAT")
       ->check(CLI::IsMember({"table", "json"}));
-  app.add_option("--config", a.config, "JSON file of the options under Metrics; the command line wins")->type_name("FILE");
-  app.add_option("--preset", a.preset, "shipped configuration: paper, indoor, outdoor, aerial, mapeval")->type_name("NAME");
+  app.add_option("--config", a.config, "JSON file of the options under Metrics; the command line wins")
+      ->type_name("FILE");
+  app.add_option("--preset", a.preset, "shipped configuration: paper, indoor, outdoor, aerial, mapeval")
+      ->type_name("NAME");
   app.add_option("--transform", a.transform, "4x4 matrix T_ref_est that moves the estimate into the reference frame")
       ->type_name("FILE");
   app.add_option("--require", a.requirements, "exit 1 unless it holds: LCR>=0.2, accuracy@0.1<=0.06; repeatable")
@@ -136,7 +141,11 @@ ExitCode run(const Arguments& arguments, const std::string& command) {
   const auto start = std::chrono::steady_clock::now();
   const auto started = fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now()));
   const cmap::ThreadLimit limit(arguments.threads);
-  cmap::RunDescription run{command, fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", started), 0.0, {}, cmap::thread_count(),
+  cmap::RunDescription run{command,
+                           fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", started),
+                           0.0,
+                           {},
+                           cmap::thread_count(),
                            std::string(cmap::simd_level_name(cmap::simd_level()))};
   const cmap::EvaluationOptions options = resolve_options(arguments);
   std::vector<cmap::Requirement> requirements;

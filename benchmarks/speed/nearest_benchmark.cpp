@@ -39,13 +39,18 @@ double cmap_both_ways(const cmap::benchmarks::TownPair& town) {
 struct NanoflannView {
   const PointCloud& cloud;
   std::size_t kdtree_get_point_count() const { return cloud.size(); }
-  float kdtree_get_pt(std::size_t i, std::size_t axis) const { return cloud.positions[i][static_cast<Eigen::Index>(axis)]; }
+  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    return cloud.positions[i][static_cast<Eigen::Index>(axis)];
+  }
   template <class Box>
-  bool kdtree_get_bbox(Box&) const { return false; }
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
 };
 
 double nanoflann_sum(const PointCloud& data, const PointCloud& queries) {
-  using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, NanoflannView>, NanoflannView, 3, std::uint32_t>;
+  using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, NanoflannView>, NanoflannView, 3,
+                                                   std::uint32_t>;
   const NanoflannView view{data};
   Tree tree(3, view, nanoflann::KDTreeSingleIndexAdaptorParams(16));
   tree.buildIndex();
@@ -63,7 +68,8 @@ double nanoflann_sum(const PointCloud& data, const PointCloud& queries) {
 double flann_sum(const PointCloud& data, const PointCloud& queries) {
   std::vector<float> xyz(3 * data.size());
   for (std::size_t i = 0; i < data.size(); ++i) std::copy_n(data.positions[i].data(), 3, &xyz[3 * i]);
-  flann::Index<flann::L2_Simple<float>> tree(flann::Matrix<float>(xyz.data(), data.size(), 3), flann::KDTreeSingleIndexParams(15));
+  flann::Index<flann::L2_Simple<float>> tree(flann::Matrix<float>(xyz.data(), data.size(), 3),
+                                             flann::KDTreeSingleIndexParams(15));
   tree.buildIndex();
   double sum = 0.0;
   for (auto q : queries.positions) {
@@ -71,7 +77,8 @@ double flann_sum(const PointCloud& data, const PointCloud& queries) {
     float sq_dist = 0.0f;
     flann::Matrix<std::size_t> indices(&index, 1, 1);
     flann::Matrix<float> dists(&sq_dist, 1, 1);
-    tree.knnSearch(flann::Matrix<float>(q.data(), 1, 3), indices, dists, 1, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
+    tree.knnSearch(flann::Matrix<float>(q.data(), 1, 3), indices, dists, 1,
+                   flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
     sum += std::sqrt(static_cast<double>(sq_dist));
   }
   return sum;

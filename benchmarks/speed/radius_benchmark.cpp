@@ -47,9 +47,13 @@ void entropy_cmap(benchmark::State& state) {
 struct View {
   const PointCloud& cloud;
   std::size_t kdtree_get_point_count() const { return cloud.size(); }
-  float kdtree_get_pt(std::size_t i, std::size_t axis) const { return cloud.positions[i][static_cast<Eigen::Index>(axis)]; }
+  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    return cloud.positions[i][static_cast<Eigen::Index>(axis)];
+  }
   template <class Box>
-  bool kdtree_get_bbox(Box&) const { return false; }
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
 };
 using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, View>, View, 3, std::uint32_t>;
 
@@ -104,7 +108,8 @@ void entropy_nanoflann(benchmark::State& state) {
     n_valid = 0;
     std::vector<std::pair<std::uint32_t, float>> found;
     for (const auto& q : cloud.positions) {
-      tree.radiusSearch(q.data(), static_cast<float>(kEntropyRadius_m * kEntropyRadius_m), found, nanoflann::SearchParams(32, 0, false));
+      tree.radiusSearch(q.data(), static_cast<float>(kEntropyRadius_m * kEntropyRadius_m), found,
+                        nanoflann::SearchParams(32, 0, false));
       if (found.size() < 11) continue;
       Eigen::Vector3d sum = Eigen::Vector3d::Zero();
       Eigen::Matrix3d sum_sq = Eigen::Matrix3d::Zero();

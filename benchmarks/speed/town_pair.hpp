@@ -24,9 +24,11 @@ struct TownPair {
 /// $CMAP_TOWNS/<points>, made by `benchmarks/make_town.py --points <points> --out $CMAP_TOWNS/<points>`.
 inline std::filesystem::path town_folder(long points) {
   const char* towns = std::getenv("CMAP_TOWNS");
-  const std::filesystem::path folder = std::filesystem::path(towns == nullptr ? "towns" : towns) / std::to_string(points);
+  const std::filesystem::path folder =
+      std::filesystem::path(towns == nullptr ? "towns" : towns) / std::to_string(points);
   if (!std::filesystem::exists(folder)) {
-    throw std::runtime_error(fmt::format("{0} is missing: benchmarks/make_town.py --points {1} --out {0}", folder.string(), points));
+    throw std::runtime_error(
+        fmt::format("{0} is missing: benchmarks/make_town.py --points {1} --out {0}", folder.string(), points));
   }
   return folder;
 }

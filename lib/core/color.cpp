@@ -107,8 +107,7 @@ double delta_e_2000(const Eigen::Vector3d& lab1, const Eigen::Vector3d& lab2) {
 }
 
 Eigen::Vector3d rgb_to_ycbcr709(const Eigen::Vector3d& rgb) {
-  return {0.2126 * rgb.x() + 0.7152 * rgb.y() + 0.0722 * rgb.z(),
-          -0.1146 * rgb.x() - 0.3854 * rgb.y() + 0.5 * rgb.z(),
+  return {0.2126 * rgb.x() + 0.7152 * rgb.y() + 0.0722 * rgb.z(), -0.1146 * rgb.x() - 0.3854 * rgb.y() + 0.5 * rgb.z(),
           0.5 * rgb.x() - 0.4542 * rgb.y() - 0.0458 * rgb.z()};
 }
 

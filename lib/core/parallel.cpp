@@ -29,9 +29,7 @@ int thread_count() {
 void parallel_chunks(std::size_t n, std::size_t chunk_size,
                      const std::function<void(std::size_t begin, std::size_t end)>& body) {
   const std::size_t n_chunks = (n + chunk_size - 1) / chunk_size;
-  const auto one = [&](std::size_t chunk) {
-    body(chunk * chunk_size, std::min(n, (chunk + 1) * chunk_size));
-  };
+  const auto one = [&](std::size_t chunk) { body(chunk * chunk_size, std::min(n, (chunk + 1) * chunk_size)); };
   if (thread_count() == 1) {
     for (std::size_t chunk = 0; chunk < n_chunks; ++chunk) one(chunk);
     return;
@@ -40,7 +38,8 @@ void parallel_chunks(std::size_t n, std::size_t chunk_size,
 }
 
 void parallel_tasks(const std::vector<std::function<void()>>& tasks) {
-  tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t i) { tasks[i](); }, tbb::simple_partitioner());
+  tbb::parallel_for(
+      std::size_t{0}, tasks.size(), [&](std::size_t i) { tasks[i](); }, tbb::simple_partitioner());
 }
 
 }  // namespace cmap

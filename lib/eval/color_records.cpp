@@ -39,7 +39,8 @@ Json color_distance_fields(const EvaluationOptions& options, const ColorDistance
 Json fidelity_fields(const EvaluationOptions& options, const ColorDistance& cd, std::vector<Warning>& warnings) {
   const double cf = color_fidelity_db(cd.value());
   if (std::isinf(cf)) {
-    warnings.push_back({"color_fidelity_infinite", "every color is exact, so color fidelity is infinite and shown as null"});
+    warnings.push_back(
+        {"color_fidelity_infinite", "every color is exact, so color fidelity is infinite and shown as null"});
   }
   return {{"value", json_number(cf)}, {"parameters", max_distance_parameter(options)}};
 }
@@ -72,8 +73,8 @@ Json consistency_fields(const Findings& f, std::vector<Warning>& warnings) {
   const ColorConsistency reference = color_consistency(f.pair.reference, o.ccs_voxel_m, o.ccs_min_points);
   if (estimate.n_voxels == 0) {
     warnings.push_back({"color_consistency_no_voxels",
-                        fmt::format("no {} m voxel of the estimate holds {} points: no color consistency", o.ccs_voxel_m,
-                                    o.ccs_min_points)});
+                        fmt::format("no {} m voxel of the estimate holds {} points: no color consistency",
+                                    o.ccs_voxel_m, o.ccs_min_points)});
   }
   Json fields = consistency_numbers(estimate);
   fields["parameters"] = {{"voxel_m", o.ccs_voxel_m}, {"min_points", o.ccs_min_points}};

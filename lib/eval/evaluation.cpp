@@ -34,11 +34,12 @@ class StageClock {
 void check_color(const PointCloud& reference, const PointCloud& estimate, const MetricSelection& selection,
                  std::vector<Warning>& warnings) {
   if (reference.has_color() && estimate.has_color()) return;
-  const bool asked = std::ranges::any_of(metric_catalog(), [&](const MetricInfo& metric) {
-    return metric.needs_color && selection.contains(metric.id);
-  });
+  const bool asked = std::ranges::any_of(
+      metric_catalog(), [&](const MetricInfo& metric) { return metric.needs_color && selection.contains(metric.id); });
   if (!asked) return;
-  const char* which = reference.has_color() ? "the estimate has" : estimate.has_color() ? "the reference has" : "both maps have";
+  const char* which = reference.has_color()  ? "the estimate has"
+                      : estimate.has_color() ? "the reference has"
+                                             : "both maps have";
   const std::string message = std::string(which) + " no color, which color metrics need";
   if (selection.color_is_required) throw UnsupportedError(message);
   warnings.push_back({"no_color", message + ": they are null"});
@@ -91,7 +92,8 @@ Evaluation evaluate(PointCloud reference, PointCloud estimate, const EvaluationO
 
   check_color(reference, estimate, selection, warnings);
   clock.run("prepare", 0.15, [&] { prepare_clouds(reference, estimate, options, T_ref_est, warnings); });
-  Evaluation result{options, T_ref_est, 0.0, 0.0, {}, {}, {}, {}, index_and_pair(reference, estimate, options.index, clock), {}};
+  Evaluation result{
+      options, T_ref_est, 0.0, 0.0, {}, {}, {}, {}, index_and_pair(reference, estimate, options.index, clock), {}};
 
   Findings findings{options, selection, result.pair, {}, {}, {}, {}};
   clock.run("geometry", 0.7, [&] {

@@ -71,7 +71,9 @@ Json overlap_fields(const Findings& f) {
 }
 
 Json hausdorff_fields(const Findings& f) {
-  const auto directed = [](const DistanceStats& d) -> Json { return {{"max", d.max_m}, {"p95", d.p95_m}, {"p99", d.p99_m}}; };
+  const auto directed = [](const DistanceStats& d) -> Json {
+    return {{"max", d.max_m}, {"p95", d.p95_m}, {"p99", d.p99_m}};
+  };
   return {{"value", std::max(f.estimate_to_reference.max_m, f.reference_to_estimate.max_m)},
           {"estimate_to_reference", directed(f.estimate_to_reference)},
           {"reference_to_estimate", directed(f.reference_to_estimate)}};

@@ -69,8 +69,8 @@ MetricSelection select_metrics(const EvaluationOptions& options) {
       std::vector<std::string_view> ids;
       for (const MetricInfo& metric : metric_catalog()) ids.push_back(metric.id);
       throw UsageError(fmt::format(
-          "metrics: \"{}\" is unknown; groups are color, color+, geometry, distribution, mme, all; metrics are {}", name,
-          fmt::join(ids, ", ")));
+          "metrics: \"{}\" is unknown; groups are color, color+, geometry, distribution, mme, all; metrics are {}",
+          name, fmt::join(ids, ", ")));
     }
   }
   return selection;

@@ -70,7 +70,8 @@ std::vector<std::string> tools(const char* name, const Json& value) {
   static const std::vector<std::string> kTools{"mapeval", "open3d", "mpeg", "cloudcompare"};
   std::vector<std::string> list = words(name, value);
   for (const std::string& tool : list) {
-    if (std::ranges::count(kTools, tool) == 0) refuse(name, tool, "is unknown; tools are mapeval, open3d, mpeg, cloudcompare");
+    if (std::ranges::count(kTools, tool) == 0)
+      refuse(name, tool, "is unknown; tools are mapeval, open3d, mpeg, cloudcompare");
   }
   return list;
 }
@@ -158,14 +159,14 @@ Json value_from_text(const OptionSpec& spec, const std::string& text) {
 }  // namespace
 
 // One line for each option: name, kind, placeholder, help, setter, getter.
-#define CMAP_OPTION(name, kind, placeholder, help, field, checked, json)                                    \
-  OptionSpec {                                                                                              \
-    name, OptionKind::kind, placeholder, help,                                                              \
-        [](EvaluationOptions& o, const Json& value) {                                                       \
-          constexpr const char* n = name;                                                                   \
-          o.field = checked;                                                                                \
-        },                                                                                                  \
-        [](const EvaluationOptions& o) -> Json { return json; }                                             \
+#define CMAP_OPTION(name, kind, placeholder, help, field, checked, json) \
+  OptionSpec {                                                           \
+    name, OptionKind::kind, placeholder, help,                           \
+        [](EvaluationOptions& o, const Json& value) {                    \
+          constexpr const char* n = name;                                \
+          o.field = checked;                                             \
+        },                                                               \
+        [](const EvaluationOptions& o) -> Json { return json; }          \
   }
 
 const std::vector<OptionSpec>& evaluation_option_specs() {

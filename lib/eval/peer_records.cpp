@@ -82,7 +82,10 @@ Json mpeg_record(const Findings& f, std::vector<Warning>& warnings) {
   const auto direction = [](const MpegDirection& d) -> Json {
     Json psnr = Json::array();
     for (double db : d.color_psnr_db) psnr.push_back(json_number(db));
-    return {{"point_mse", d.point_mse_m2}, {"hausdorff_squared", d.sq_hausdorff_m2}, {"color_mse", d.color_mse}, {"color_psnr", psnr}};
+    return {{"point_mse", d.point_mse_m2},
+            {"hausdorff_squared", d.sq_hausdorff_m2},
+            {"color_mse", d.color_mse},
+            {"color_psnr", psnr}};
   };
   const MpegDistortion d = mpeg_distortion(mpeg_cloud(f.pair.reference), mpeg_cloud(f.pair.estimate));
   return {{"definition", "mpeg-pcc-dmetric 0.14 pc_error, point to point and color (BT.709, peak 1)"},

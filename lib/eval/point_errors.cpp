@@ -44,9 +44,8 @@ void write_errors(const Evaluation& evaluation, const NearestPairs& pairs, const
   std::vector<PointField> fields{{"scalar_distance_m", distances}};
   Array<float> color_distances, recall_classes;
   if (evaluation.pair.has_color()) {
-    color_distances = field(points, [&](std::size_t slot) {
-      return (pairs.from_color(slot) - pairs.to_color(slot)).norm() / 255.0;
-    });
+    color_distances =
+        field(points, [&](std::size_t slot) { return (pairs.from_color(slot) - pairs.to_color(slot)).norm() / 255.0; });
     fields.push_back({"scalar_color_distance", color_distances});
   }
   if (recall != nullptr) {

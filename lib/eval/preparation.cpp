@@ -45,12 +45,14 @@ void warn_about_frames(const Box3d& a, const Box3d& b, std::vector<Warning>& war
     warnings.push_back({"units_or_frame_mismatch",
                         fmt::format("the maps' boxes are {:.4g} m apart: are both in the reference frame?", gap)});
   } else if (std::max(size_a, size_b) > kDifferentUnits * std::min(size_a, size_b)) {
-    warnings.push_back({"units_or_frame_mismatch",
-                        fmt::format("the reference spans {:.4g} m and the estimate {:.4g} m: are both in meters?", size_a, size_b)});
+    warnings.push_back(
+        {"units_or_frame_mismatch",
+         fmt::format("the reference spans {:.4g} m and the estimate {:.4g} m: are both in meters?", size_a, size_b)});
   }
   if (gap > kFarApart_m) {
-    warnings.push_back({"precision_reduced",
-                        fmt::format("the maps are {:.4g} km apart: distances are rounded to single precision there", gap / 1e3)});
+    warnings.push_back(
+        {"precision_reduced",
+         fmt::format("the maps are {:.4g} km apart: distances are rounded to single precision there", gap / 1e3)});
   }
 }
 
@@ -76,8 +78,8 @@ void prepare_clouds(PointCloud& reference, PointCloud& estimate, const Evaluatio
   const Box3d estimate_box = bounds(estimate);
   warn_about_frames(reference_box, estimate_box, warnings);
   if (gap_between(reference_box, estimate_box) <= kFarApart_m) {
-    const Eigen::Vector3d origin = choose_origin(
-        {reference_box.min.cwiseMin(estimate_box.min), reference_box.max.cwiseMax(estimate_box.max)});
+    const Eigen::Vector3d origin =
+        choose_origin({reference_box.min.cwiseMin(estimate_box.min), reference_box.max.cwiseMax(estimate_box.max)});
     rebase(reference, origin);
     rebase(estimate, origin);
   }

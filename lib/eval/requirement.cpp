@@ -50,7 +50,8 @@ const nlohmann::ordered_json& part_of(const MetricRecord& record, const Requirem
 }  // namespace
 
 Requirement parse_requirement(const std::string& text, const EvaluationOptions& options) {
-  static const std::regex kForm(R"(\s*([A-Za-z_0-9]+#?)((?:\.[A-Za-z_0-9]+)*)(?:@([0-9.eE+-]+))?\s*(>=|<=|==|>|<)\s*([-+0-9.eE]+)\s*)");
+  static const std::regex kForm(
+      R"(\s*([A-Za-z_0-9]+#?)((?:\.[A-Za-z_0-9]+)*)(?:@([0-9.eE+-]+))?\s*(>=|<=|==|>|<)\s*([-+0-9.eE]+)\s*)");
   std::smatch match;
   if (!std::regex_match(text, match, kForm)) refuse(text, "expected METRIC[@THRESHOLD] >= NUMBER (or <=, >, <, ==)");
   const auto number = [&](const std::string& digits) {
@@ -59,7 +60,8 @@ Requirement parse_requirement(const std::string& text, const EvaluationOptions& 
     if (end != digits.c_str() + digits.size()) refuse(text, fmt::format("\"{}\" is not a number", digits));
     return value;
   };
-  Requirement requirement{text, find_metric(match[1].str()), std::nullopt, match[2].str(), match[4].str(), number(match[5].str())};
+  Requirement requirement{text,           find_metric(match[1].str()), std::nullopt, match[2].str(),
+                          match[4].str(), number(match[5].str())};
   if (match[3].matched) requirement.threshold_m = number(match[3].str());
   if (requirement.metric == nullptr) refuse(text, fmt::format("unknown metric \"{}\"", match[1].str()));
   if (!select_metrics(options).contains(requirement.metric->id)) {

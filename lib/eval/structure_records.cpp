@@ -50,9 +50,9 @@ std::vector<MetricRecord> distribution_records(const Findings& f, std::vector<Wa
   const std::vector<VoxelDistance> distances = wasserstein_distances(f.gaussians);
   records.add("average_wasserstein", [&] {
     if (distances.empty()) {
-      warnings.push_back({"average_wasserstein_no_voxels",
-                          fmt::format("no {} m voxel holds {} points of both maps: no AWD and no SCS",
-                                      f.options.awd_voxel_m, f.options.awd_min_points)});
+      warnings.push_back(
+          {"average_wasserstein_no_voxels", fmt::format("no {} m voxel holds {} points of both maps: no AWD and no SCS",
+                                                        f.options.awd_voxel_m, f.options.awd_min_points)});
     }
     return wasserstein_fields(f.options, average_wasserstein(distances));
   });

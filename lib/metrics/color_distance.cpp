@@ -86,7 +86,8 @@ ExposureGains exposure_gains(const MapPair& pair, double max_distance_m) {
     const Eigen::Vector3d estimate = pairs.from_color(i);
     const Eigen::Vector3d reference = pairs.to_color(i);
     for (int c = 0; c < 3; ++c) {
-      if (estimate[c] != 0.0 && reference[c] != 0.0) ratios[static_cast<std::size_t>(c)].push_back(reference[c] / estimate[c]);
+      if (estimate[c] != 0.0 && reference[c] != 0.0)
+        ratios[static_cast<std::size_t>(c)].push_back(reference[c] / estimate[c]);
     }
   }
   for (int c = 0; c < 3; ++c) {

@@ -69,7 +69,9 @@ LocalColorRecall local_color_recall(const MapPair& pair, const LocalColorRecallO
   for (std::size_t j = 0; j < pairs.size(); ++j) {
     const bool covered = pairs.distance_m(j) <= options.radius_m;
     const bool recalled = covered && best[j] <= right;
-    recall.classes[j] = recalled ? RecallClass::kRecalled : covered ? RecallClass::kWrongColor : RecallClass::kNotCovered;
+    recall.classes[j] = recalled  ? RecallClass::kRecalled
+                        : covered ? RecallClass::kWrongColor
+                                  : RecallClass::kNotCovered;
     recall.n_covered += covered ? 1 : 0;
     recall.n_recalled += recalled ? 1 : 0;
   }

@@ -23,7 +23,8 @@ std::map<std::uint64_t, double> order_statistics(std::span<const double> values,
 
   std::map<std::size_t, std::vector<double>> members;
   const auto bucket_at = [&](std::uint64_t rank) {
-    return static_cast<std::size_t>(std::upper_bound(first_rank.begin(), first_rank.end(), rank) - first_rank.begin() - 1);
+    return static_cast<std::size_t>(std::upper_bound(first_rank.begin(), first_rank.end(), rank) - first_rank.begin() -
+                                    1);
   };
   for (std::uint64_t rank : ranks) members[bucket_at(rank)];
   std::vector<std::vector<double>*> collect(kBuckets, nullptr);

@@ -29,7 +29,8 @@ double mapeval_wasserstein(const Gaussian& reference, const Gaussian& estimate) 
   const Eigen::Matrix3d factor = cov_ref.llt().matrixL();
   const Eigen::Matrix3d product = factor * cov_est * factor.transpose();
   const Eigen::Matrix3d root = product.llt().matrixL();
-  const double sq = (reference.mean - estimate.mean).squaredNorm() + cov_ref.trace() + cov_est.trace() - 2 * root.trace();
+  const double sq =
+      (reference.mean - estimate.mean).squaredNorm() + cov_ref.trace() + cov_est.trace() - 2 * root.trace();
   return std::sqrt(std::max(0.0, sq));
 }
 

@@ -31,7 +31,8 @@ struct VoxelGaussian {
 };
 
 /// The map's voxels with at least min_points points, ordered by index.
-std::vector<VoxelGaussian> voxel_gaussians(const PointBlocks& points, const VoxelFrame& frame, std::uint64_t min_points) {
+std::vector<VoxelGaussian> voxel_gaussians(const PointBlocks& points, const VoxelFrame& frame,
+                                           std::uint64_t min_points) {
   const auto add = [&](MomentSums& sums, std::size_t, const Eigen::Vector3d& world, const VoxelKey& key) {
     const Eigen::Vector3d x = world - frame.center(key);
     ++sums.n;

@@ -60,9 +60,12 @@ std::uint64_t peak_memory_bytes() {
 Json run_json(const RunDescription& run) {
   Json stages = Json::object();
   for (const auto& [name, seconds] : run.stage_seconds) stages[name] = seconds;
-  return {{"command", run.command},   {"started_utc", run.started_utc},
-          {"wall_s", run.wall_s},     {"stages", stages},
-          {"threads", run.threads},   {"simd", run.simd},
+  return {{"command", run.command},
+          {"started_utc", run.started_utc},
+          {"wall_s", run.wall_s},
+          {"stages", stages},
+          {"threads", run.threads},
+          {"simd", run.simd},
           {"peak_memory_bytes", peak_memory_bytes()}};
 }
 
@@ -70,9 +73,10 @@ Json run_json(const RunDescription& run) {
 void add_input_warnings(Json& warnings, const char* which, const InputDescription& input) {
   const std::uint64_t dropped = input.file.points - input.file.finite_points;
   if (dropped > 0) {
-    warnings.push_back({{"id", "non_finite_points_dropped"},
-                        {"message", std::string(which) + ": " + std::to_string(dropped) + " of " +
-                                        std::to_string(input.file.points) + " points are not finite and were dropped"}});
+    warnings.push_back(
+        {{"id", "non_finite_points_dropped"},
+         {"message", std::string(which) + ": " + std::to_string(dropped) + " of " + std::to_string(input.file.points) +
+                         " points are not finite and were dropped"}});
   }
   for (const std::string& note : input.file.notes) {
     warnings.push_back({{"id", "input_note"}, {"message", std::string(which) + ": " + note}});

@@ -31,7 +31,8 @@ std::string percent(const Json& value) { return value.is_number() ? hundredths(v
 
 std::string with_thousands(const Json& count) {
   std::string text = std::to_string(count.get<std::uint64_t>());
-  for (std::size_t place = text.size(); place > 3; place -= 3) text.insert(text.begin() + static_cast<std::ptrdiff_t>(place - 3), ',');
+  for (std::size_t place = text.size(); place > 3; place -= 3)
+    text.insert(text.begin() + static_cast<std::ptrdiff_t>(place - 3), ',');
   return text;
 }
 
@@ -69,13 +70,15 @@ std::string remark(const MetricInfo& info, const Json& metric) {
   if (info.id == "color_distance") return fmt::format("{} of 255", digits(metric.at("value_8bit")));
   if (info.id == "local_color_recall") {
     return fmt::format("coverage {}, of it {}   tau {}, r {}", percent(metric.at("coverage")),
-                       percent(metric.at("conditional")), parameters.at("tau").get<double>(), meters(parameters.at("radius_m")));
+                       percent(metric.at("conditional")), parameters.at("tau").get<double>(),
+                       meters(parameters.at("radius_m")));
   }
   if (info.id == "color_consistency" || info.id == "average_wasserstein") {
     return fmt::format("{} voxels of {}, >= {} points", with_thousands(metric.at("n_voxels")),
                        meters(parameters.at("voxel_m")), parameters.at("min_points").get<std::uint64_t>());
   }
-  if (info.id == "spatial_consistency") return fmt::format("within {} voxels", parameters.at("radius_voxels").get<int>());
+  if (info.id == "spatial_consistency")
+    return fmt::format("within {} voxels", parameters.at("radius_voxels").get<int>());
   if (info.id == "overlap") return fmt::format("within {}", meters(parameters.at("overlap_distance_m")));
   if (info.id == "rmse") return fmt::format("inliers {}", digits(metric.at("inlier_rmse")));
   if (info.id == "chamfer") {
@@ -84,7 +87,8 @@ std::string remark(const MetricInfo& info, const Json& metric) {
   }
   if (info.id == "hausdorff") return fmt::format("95 %: {}", digits(metric.at("estimate_to_reference").at("p95")));
   if (info.id == "mean_map_entropy") {
-    return fmt::format("r {}, reference {}", meters(parameters.at("radius_m")), digits(metric.at("reference").at("value")));
+    return fmt::format("r {}, reference {}", meters(parameters.at("radius_m")),
+                       digits(metric.at("reference").at("value")));
   }
   return "";
 }
@@ -114,7 +118,8 @@ std::string value_rows(const MetricInfo& info, const Json& metric) {
 /// The thresholds above the columns of the metrics that have one value for each.
 std::string threshold_line(const Json& metric) {
   std::string line(44, ' ');  // where row() puts the value
-  for (const Json& entry : metric.at("per_threshold")) line += fmt::format(" {:>10}", "<= " + meters(entry.at("threshold_m")));
+  for (const Json& entry : metric.at("per_threshold"))
+    line += fmt::format(" {:>10}", "<= " + meters(entry.at("threshold_m")));
   return line + "\n";
 }
 
@@ -162,7 +167,8 @@ std::string format_table(const Json& report) {
     table += value_rows(info, metric);
   }
   if (report.contains("aliases")) {
-    for (const auto& [tool, record] : report.at("aliases").items()) table += fmt::format("\nas {}\n{}", tool, alias_lines("", record));
+    for (const auto& [tool, record] : report.at("aliases").items())
+      table += fmt::format("\nas {}\n{}", tool, alias_lines("", record));
   }
   const Json& warnings = report.at("warnings");
   if (!warnings.empty()) table += "\nwarnings\n";

@@ -12,9 +12,8 @@ constexpr std::size_t kQueryChunk = 256;
 NearestField find_nearest(const Bvh& index, const PointBlocks& queries) {
   NearestField field{Array<std::uint32_t>(queries.size), Array<double>(queries.size)};
   const Queries moved{queries, queries.origin - index.points.origin};
-  parallel_chunks(queries.blocks.size(), kQueryChunk, [&](std::size_t begin, std::size_t end) {
-    kernels().nearest(index, moved, begin, end, field);
-  });
+  parallel_chunks(queries.blocks.size(), kQueryChunk,
+                  [&](std::size_t begin, std::size_t end) { kernels().nearest(index, moved, begin, end, field); });
   return field;
 }
 

@@ -103,7 +103,8 @@ TEST(Nearest, CloudsAMillionMetersApart) {
   const NearestNeighbors found = nearest_neighbors(data, queries);
   for (std::size_t i = 0; i < queries.size(); ++i) {
     double sq_dist = INFINITY;
-    for (const auto& p : data.positions) sq_dist = std::min(sq_dist, (queries.world(i) - p.cast<double>()).squaredNorm());
+    for (const auto& p : data.positions)
+      sq_dist = std::min(sq_dist, (queries.world(i) - p.cast<double>()).squaredNorm());
     // Queries are rounded to float a million meters away: 0.0625 m, on a distance of a million.
     ASSERT_NEAR(std::sqrt(found.sq_dist[i]), std::sqrt(sq_dist), 0.1);
   }

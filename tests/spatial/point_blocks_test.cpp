@@ -17,7 +17,8 @@ TEST(SortPoints, IsAPermutationWithThePositionsInPlace) {
     const PointCloud cloud = test::uniform_cloud(n, 1);
     const PointBlocks sorted = sort_points(cloud);
     ASSERT_EQ(sorted.size, n);
-    std::vector<std::uint32_t> indices(sorted.original_index.begin(), sorted.original_index.begin() + static_cast<long>(n));
+    std::vector<std::uint32_t> indices(sorted.original_index.begin(),
+                                       sorted.original_index.begin() + static_cast<long>(n));
     for (std::size_t slot = 0; slot < n; ++slot) EXPECT_EQ(sorted.offset(slot), cloud.positions[indices[slot]]);
     std::sort(indices.begin(), indices.end());
     for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(indices[i], i);

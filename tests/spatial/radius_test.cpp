@@ -25,7 +25,8 @@ struct ColoredIndex {
   BoxLevels boxes;
 };
 
-void expect_equals_brute_force(const PointCloud& data, const PointCloud& queries, const ColorSearch& search, float start) {
+void expect_equals_brute_force(const PointCloud& data, const PointCloud& queries, const ColorSearch& search,
+                               float start) {
   const ColoredIndex index(data);
   const ColoredIndex query(queries);
   Array<float> best(queries.size(), start);
@@ -96,7 +97,8 @@ TEST(NeighborhoodShapes, EqualBruteForce) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (const auto& p : neighbors) mean += p / static_cast<double>(neighbors.size());
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-    for (const auto& p : neighbors) covariance += (p - mean) * (p - mean).transpose() / static_cast<double>(neighbors.size() - 1);
+    for (const auto& p : neighbors)
+      covariance += (p - mean) * (p - mean).transpose() / static_cast<double>(neighbors.size() - 1);
     // Sums relative to the query instead of the mean: no more than a few digits lost of sixteen.
     if (neighbors.size() <= 4) continue;
     ASSERT_NEAR(dets[i], covariance.determinant(), 1e-10 * covariance.diagonal().prod());

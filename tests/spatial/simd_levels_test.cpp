@@ -73,7 +73,8 @@ TEST_P(SimdLevels, NeighborhoodShapes) {
   EXPECT_EQ(found.n_neighbors, expected.n_neighbors);
   for (std::size_t i = 0; i < n; ++i) {
     // NaN equals nothing, so the bits are compared.
-    ASSERT_EQ(std::bit_cast<std::uint64_t>(found.covariance_det[i]), std::bit_cast<std::uint64_t>(expected.covariance_det[i]));
+    ASSERT_EQ(std::bit_cast<std::uint64_t>(found.covariance_det[i]),
+              std::bit_cast<std::uint64_t>(expected.covariance_det[i]));
   }
 }
 

@@ -31,9 +31,8 @@ void parallel_tasks(const std::vector<std::function<void()>>& tasks);
 template <class Sum, class ChunkResult>
 Sum ordered_sum(std::size_t n, std::size_t chunk_size, ChunkResult&& chunk_result) {
   std::vector<Sum> partial((n + chunk_size - 1) / chunk_size);
-  parallel_chunks(n, chunk_size, [&](std::size_t begin, std::size_t end) {
-    partial[begin / chunk_size] = chunk_result(begin, end);
-  });
+  parallel_chunks(n, chunk_size,
+                  [&](std::size_t begin, std::size_t end) { partial[begin / chunk_size] = chunk_result(begin, end); });
   Sum total{};
   for (const Sum& p : partial) total += p;
   return total;

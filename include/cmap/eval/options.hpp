@@ -39,7 +39,7 @@ enum class OptionKind { kNumber, kCount, kFlag, kNumbers, kWords, kWord };
 
 /// One field of EvaluationOptions as users see it.
 struct OptionSpec {
-  const char* name;         ///< on the command line without the dashes, in files and reports
+  const char* name;  ///< on the command line without the dashes, in files and reports
   OptionKind kind;
   const char* placeholder;  ///< "METERS", "LIST", ...
   const char* help;

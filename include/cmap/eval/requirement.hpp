@@ -9,11 +9,11 @@ namespace cmap {
 
 /// A condition on a result: `LCR>=0.2`, `chamfer<=0.5`, `accuracy@0.1<=0.06`, `local_color_recall.coverage>=0.5`.
 struct Requirement {
-  std::string text;        ///< as given
+  std::string text;  ///< as given
   const MetricInfo* metric;
   std::optional<double> threshold_m;  ///< after the @
-  std::string field;       ///< after the dot; empty means value
-  std::string comparison;  ///< >=, <=, >, <, ==
+  std::string field;                  ///< after the dot; empty means value
+  std::string comparison;             ///< >=, <=, >, <, ==
   double bound;
 };
 

@@ -31,6 +31,7 @@ struct DistanceStats {
 
 /// Statistics of d = sqrt(sq_dist); "within" means d <= threshold, decided in double. sq_dist must not be empty.
 /// Bitwise the same for any number of threads.
-DistanceStats distance_stats(std::span<const double> sq_dist, std::span<const double> thresholds_m, double truncation_m);
+DistanceStats distance_stats(std::span<const double> sq_dist, std::span<const double> thresholds_m,
+                             double truncation_m);
 
 }  // namespace cmap

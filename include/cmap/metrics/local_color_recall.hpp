@@ -26,10 +26,10 @@ struct RecallCurve {
 /// differs by at most 3 tau. 8-bit colors are compared in exact integers, distances in double.
 struct LocalColorRecall {
   std::uint64_t n_reference = 0;
-  std::uint64_t n_covered = 0;   ///< with any estimated point within the radius
+  std::uint64_t n_covered = 0;  ///< with any estimated point within the radius
   std::uint64_t n_recalled = 0;
-  RecallCurve curve;             ///< empty unless asked for
-  Array<RecallClass> classes;    ///< by reference slot
+  RecallCurve curve;           ///< empty unless asked for
+  Array<RecallClass> classes;  ///< by reference slot
 
   double value() const { return static_cast<double>(n_recalled) / static_cast<double>(n_reference); }
   double coverage() const { return static_cast<double>(n_covered) / static_cast<double>(n_reference); }

@@ -38,7 +38,8 @@ struct PointBlocks {
 };
 
 /// Sorts a cloud along a Hilbert curve through its bounds, 2048 cells an axis; cells with very many points are refined.
-/// Deterministic for any number of threads. Throws UnsupportedError above 2^31 points, std::invalid_argument when empty.
+/// Deterministic for any number of threads. Throws UnsupportedError above 2^31 points, std::invalid_argument when
+/// empty.
 PointBlocks sort_points(const PointCloud& cloud);
 
 /// The cloud's colors in the slots of `points`. The cloud must have colors and be the one that was sorted.

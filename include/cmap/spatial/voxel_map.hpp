@@ -27,10 +27,13 @@ class VoxelFrame {
     return {axis_key(world.x(), base_[0]), axis_key(world.y(), base_[1]), axis_key(world.z(), base_[2])};
   }
   /// World index of the voxel.
-  std::array<std::int64_t, 3> index(const VoxelKey& key) const { return {base_[0] + key.x, base_[1] + key.y, base_[2] + key.z}; }
+  std::array<std::int64_t, 3> index(const VoxelKey& key) const {
+    return {base_[0] + key.x, base_[1] + key.y, base_[2] + key.z};
+  }
   Eigen::Vector3d center(const VoxelKey& key) const {
     const auto [x, y, z] = index(key);
-    return (Eigen::Vector3d(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)).array() + 0.5) * size_m_;
+    return (Eigen::Vector3d(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)).array() + 0.5) *
+           size_m_;
   }
 
  private:
@@ -96,7 +99,8 @@ class VoxelMap {
   void grow() {
     Array<std::uint32_t> larger(2 * table_.size(), kFree);
     table_.swap(larger);
-    for (std::size_t i = 0; i < entries_.size(); ++i) table_[find_place(entries_[i].key)] = static_cast<std::uint32_t>(i);
+    for (std::size_t i = 0; i < entries_.size(); ++i)
+      table_[find_place(entries_[i].key)] = static_cast<std::uint32_t>(i);
   }
 
   Array<Entry> entries_;

@@ -48,7 +48,8 @@ class ColorGroup {
     const Mask16 near =
         less_equal(sq_dist_to_child(tree_.boxes[level][node], c, q_), broadcast(sq_radius_perhaps_)) & active_;
     if (bits(near) == 0) return false;
-    return bits(near & less(sq_dist_to_child(color_boxes_[level][node], c, color_), best_ * broadcast(kColorReach))) != 0;
+    return bits(near & less(sq_dist_to_child(color_boxes_[level][node], c, color_), best_ * broadcast(kColorReach))) !=
+           0;
   }
 
   void scan(std::uint32_t block) {

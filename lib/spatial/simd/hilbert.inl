@@ -72,7 +72,8 @@ void hilbert_keys(const Eigen::Vector3f* positions, std::size_t n, const CurveGr
     for (int i = 0; i < count; ++i) {
       const std::uint64_t key =
           spread(cells.axis[0][i]) << 2 | spread(cells.axis[1][i]) << 1 | spread(cells.axis[2][i]);
-      keys[begin + static_cast<std::size_t>(i)] = key << kIndexBits | (first_index + begin + static_cast<std::size_t>(i));
+      keys[begin + static_cast<std::size_t>(i)] =
+          key << kIndexBits | (first_index + begin + static_cast<std::size_t>(i));
     }
   }
 }

@@ -43,16 +43,32 @@ inline Float16 broadcast(float v) {
   for (int i = 0; i < 16; ++i) result.lane[i] = v;
   return result;
 }
-inline Float16 operator+(const Float16& a, const Float16& b) { return each_lane(a, b, [](float x, float y) { return x + y; }); }
-inline Float16 operator-(const Float16& a, const Float16& b) { return each_lane(a, b, [](float x, float y) { return x - y; }); }
-inline Float16 operator*(const Float16& a, const Float16& b) { return each_lane(a, b, [](float x, float y) { return x * y; }); }
+inline Float16 operator+(const Float16& a, const Float16& b) {
+  return each_lane(a, b, [](float x, float y) { return x + y; });
+}
+inline Float16 operator-(const Float16& a, const Float16& b) {
+  return each_lane(a, b, [](float x, float y) { return x - y; });
+}
+inline Float16 operator*(const Float16& a, const Float16& b) {
+  return each_lane(a, b, [](float x, float y) { return x * y; });
+}
 /// a * b + c; fused where the instruction set has it, so the last bit may differ between levels.
 inline Float16 multiply_add(const Float16& a, const Float16& b, const Float16& c) { return a * b + c; }
-inline Float16 min(const Float16& a, const Float16& b) { return each_lane(a, b, [](float x, float y) { return x < y ? x : y; }); }
-inline Float16 max(const Float16& a, const Float16& b) { return each_lane(a, b, [](float x, float y) { return x > y ? x : y; }); }
-inline Mask16 less(const Float16& a, const Float16& b) { return each_lane_mask(a, b, [](float x, float y) { return x < y; }); }
-inline Mask16 less_equal(const Float16& a, const Float16& b) { return each_lane_mask(a, b, [](float x, float y) { return x <= y; }); }
-inline Mask16 equal(const Float16& a, const Float16& b) { return each_lane_mask(a, b, [](float x, float y) { return x == y; }); }
+inline Float16 min(const Float16& a, const Float16& b) {
+  return each_lane(a, b, [](float x, float y) { return x < y ? x : y; });
+}
+inline Float16 max(const Float16& a, const Float16& b) {
+  return each_lane(a, b, [](float x, float y) { return x > y ? x : y; });
+}
+inline Mask16 less(const Float16& a, const Float16& b) {
+  return each_lane_mask(a, b, [](float x, float y) { return x < y; });
+}
+inline Mask16 less_equal(const Float16& a, const Float16& b) {
+  return each_lane_mask(a, b, [](float x, float y) { return x <= y; });
+}
+inline Mask16 equal(const Float16& a, const Float16& b) {
+  return each_lane_mask(a, b, [](float x, float y) { return x == y; });
+}
 /// Lanes of `a` where the mask is set, else of `b`.
 inline Float16 select(Mask16 m, const Float16& a, const Float16& b) {
   Float16 result;

@@ -35,11 +35,11 @@ inline Mask16 mask_from_bits(std::uint32_t b) {
   return r;
 }
 
-#define CMAP_LANES_BINARY(Result, name, intrinsic)              \
-  inline Result name(const Float16& a, const Float16& b) {      \
-    Result r;                                                   \
+#define CMAP_LANES_BINARY(Result, name, intrinsic)                           \
+  inline Result name(const Float16& a, const Float16& b) {                   \
+    Result r;                                                                \
     for (int i = 0; i < 4; ++i) r.part[i] = intrinsic(a.part[i], b.part[i]); \
-    return r;                                                   \
+    return r;                                                                \
   }
 CMAP_LANES_BINARY(Float16, operator+, _mm_add_ps)
 CMAP_LANES_BINARY(Float16, operator-, _mm_sub_ps)

@@ -55,7 +55,10 @@ inline double covariance_det(const Moments16& m, int i, double n) {
 class NeighborhoodGroup {
  public:
   NeighborhoodGroup(const Tree& tree, const PointBlock& block, double radius_m)
-      : tree_(tree), sq_radius_(radius_m * radius_m), sq_reach_(static_cast<float>(sq_radius_ * (1.0 + kRounding))), moments_{} {
+      : tree_(tree),
+        sq_radius_(radius_m * radius_m),
+        sq_reach_(static_cast<float>(sq_radius_ * (1.0 + kRounding))),
+        moments_{} {
     q_ = {load(block.x), load(block.y), load(block.z)};
     for (int i = 0; i < 16; ++i) {
       lanes_.x[i] = block.x[i];

@@ -91,8 +91,8 @@ inline LaneBox box_of(const Lanes3& q, Mask16 active) {
 
 inline int first_bit(std::uint32_t bits_set) { return __builtin_ctz(bits_set); }
 
-/// Scans those blocks below a node of the lowest level that matter to a lane. They are all tested before the first scan:
-/// the tests overlap in the processor, which is worth more than a bound from the scans before.
+/// Scans those blocks below a node of the lowest level that matter to a lane. They are all tested before the first
+/// scan: the tests overlap in the processor, which is worth more than a bound from the scans before.
 template <class Reach>
 inline void scan_children(std::uint32_t node, std::uint32_t candidates, Reach& reach) {
   std::uint32_t mattering = 0;
@@ -124,7 +124,8 @@ inline void walk(const Tree& tree, const LaneBox& box, Reach& reach) {
   while (n_pending > 0) {
     const Pending top = stack[--n_pending];
     if (!reach.still(top.sq_dist)) continue;
-    if (top.level + 1 < tree.n_levels && !reach.matters(top.level + 1, top.node / kBlockSize, static_cast<int>(top.node % kBlockSize))) {
+    if (top.level + 1 < tree.n_levels &&
+        !reach.matters(top.level + 1, top.node / kBlockSize, static_cast<int>(top.node % kBlockSize))) {
       continue;
     }
     const Float16 distances = sq_dist_to_children(tree.boxes[top.level][top.node], box);
@@ -137,8 +138,8 @@ inline void walk(const Tree& tree, const LaneBox& box, Reach& reach) {
     store(sq_dist, distances);
     for (; enter != 0; enter &= enter - 1) {
       const int c = first_bit(enter);
-      stack[n_pending++] = {sq_dist[c], top.node * static_cast<std::uint32_t>(kBlockSize) + static_cast<std::uint32_t>(c),
-                            top.level - 1};
+      stack[n_pending++] = {
+          sq_dist[c], top.node * static_cast<std::uint32_t>(kBlockSize) + static_cast<std::uint32_t>(c), top.level - 1};
     }
   }
 }
