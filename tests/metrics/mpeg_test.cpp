@@ -69,16 +69,16 @@ TEST(Mpeg, EquallyNearNeighborsGiveTheirRoundedMeanColor) {
 }
 
 TEST(Mpeg, NearlyEqualDistancesCountAsEqualStepByStep) {
-  // Squared distances 1, 1 + 6e-9 and more: each less than 1e-8 from the last. In floats: steps of 2^-27 in z^2.
-  const float z = std::ldexp(1.0f, -14);  // z^2 = 2^-28 = 3.7e-9
-  const PointCloud center = test::cloud_of({{0, 0, 0}}, {kBlack});
-  const PointCloud chain = test::cloud_of({{1, 0, 0}, {-1, 0, z}, {0, 1, 2 * z}, {0, -1, 0.5f}},
-                                          {{30, 30, 30}, {60, 60, 60}, {90, 90, 90}, kWhite});
-  // Steps 3.7e-9 and 1.1e-8: the third is too far.
-  EXPECT_NEAR(distortion(center, chain).reference_to_estimate.color_mse[0], sq_luma(45), 1e-8);
-  const PointCloud closer = test::cloud_of({{1, 0, 0}, {-1, 0, z}, {0, 1, 1.5f * z}, {0, -1, 0.5f}},
-                                           {{30, 30, 30}, {60, 60, 60}, {90, 90, 90}, kWhite});
-  EXPECT_NEAR(distortion(center, closer).reference_to_estimate.color_mse[0], sq_luma(60), 1e-8);
+  const float z = std::ldexp(1.0f, -14);  // z^2 = 3.7e-9
+  const auto sq_luma_of_chain = [&](float third) {
+    const PointCloud chain = test::cloud_of({{1, 0, 0}, {-1, 0, z}, {0, 1, third}, {0, -1, 0.5f}},
+                                            {{30, 30, 30}, {60, 60, 60}, {90, 90, 90}, kWhite});
+    return distortion(test::cloud_of({{0, 0, 0}}, {kBlack}), chain).reference_to_estimate.color_mse[0];
+  };
+  // 1, 3.7e-9 more, and 1.1e-8 more than that: too far.
+  EXPECT_NEAR(sq_luma_of_chain(2.0f * z), sq_luma(45), 1e-8);
+  // A step of 8.3e-9 is near enough, though it leads 1.2e-8 away from the nearest.
+  EXPECT_NEAR(sq_luma_of_chain(1.8f * z), sq_luma(60), 1e-8);
 }
 
 TEST(Mpeg, ManyEquallyNearNeighborsAreLookedFor) {

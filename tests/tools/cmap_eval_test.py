@@ -362,17 +362,17 @@ class BadMaps(CmapEval):
     def test_unknown_format(self):
         self.refused_map("random.bin", bytes(range(256)), "is of no known format; PLY, PCD, LAS")
         self.refused_map("image.png", b"\x89PNG\r\n\x1a\n" + bytes(64), "PLY, PCD, LAS")
-        self.refused_map("letter.txt", "Dear all,\nhere is the map.\n", "line 1")
+        self.refused_map("letter.txt", "Dear all,\nhere is the map.\n", "line 2", "'here' is not a number")
 
     def test_truncated_header(self):
-        self.refused_map("a.ply", ply(POINTS).partition("end_header")[0], "line 7", "truncated: the file ends before 'end_header'")
-        self.refused_map("a.pcd", pcd(POINTS)[:60], "truncated: the file ends before the line DATA")
+        self.refused_map("a.ply", ply(POINTS).partition("end_header")[0], "line 6", "truncated: the file ends before 'end_header'")
+        self.refused_map("a.pcd", pcd(POINTS).partition(b"POINTS")[0], "line 7", "truncated: the file ends before the line DATA")
         self.refused_map("a.las", las(POINTS)[:100], "truncated", "byte")
 
     def test_truncated_body(self):
         self.refused_map("ascii.ply", ply(POINTS[:2], count=3), "truncated: 3 points", "byte")
-        self.refused_map("rows.ply", ply([(0.25, 0.25, 0.25), (1, 1, 1)], count=3), "line 10", "truncated: the file ends after 2 of 3 points")
-        self.refused_map("cut.ply", ply(POINTS)[:-4], "line 10", "ends before the value of 'z'")
+        self.refused_map("rows.ply", ply([(0.25, 0.25, 0.25), (1, 1, 1)], count=3), "line 9", "truncated: the file ends after 2 of 3 points")
+        self.refused_map("cut.ply", ply([(0.25, 0.25, 0.25), (1, 1, 1)])[:-3], "line 9", "ends before the value of 'z'")
         self.refused_map("binary.ply", binary_ply(POINTS)[:-1], "truncated: 3 points", "byte")
         self.refused_map("binary.pcd", pcd(POINTS)[:-1], "truncated", "byte")
         self.refused_map("points.las", las(POINTS)[:-1], "truncated", "byte")

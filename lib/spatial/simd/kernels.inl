@@ -3,12 +3,16 @@
 // No inline function of another header may be emitted here and then be shared with the rest of the program: it would
 // carry this file's instructions onto processors without them. Hence plain loops and pointers in the kernels.
 
-#include "spatial/simd/color_within.inl"
-#include "spatial/simd/hilbert.inl"
 #include "spatial/simd/kernels.hpp"
-#include "spatial/simd/nearest.inl"
-#include "spatial/simd/neighborhood.inl"
+
+// In order of use.
+// clang-format off
+#include "spatial/simd/hilbert.inl"
 #include "spatial/simd/traversal.inl"
+#include "spatial/simd/nearest.inl"
+#include "spatial/simd/color_within.inl"
+#include "spatial/simd/neighborhood.inl"
+// clang-format on
 
 namespace cmap::CMAP_LANES {
 
