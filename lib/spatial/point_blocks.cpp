@@ -102,7 +102,10 @@ void refine_crowded_cells(std::span<const Eigen::Vector3f> positions, Array<std:
 }
 
 void fill_block(const PointCloud& cloud, const Array<std::uint64_t>& order, std::size_t block, PointBlocks& sorted) {
+  constexpr std::size_t kAhead = 64;  // the points are anywhere in the cloud: ask for them early
   for (std::size_t lane = 0; lane < kBlockSize; ++lane) {
+    const std::size_t later = std::min(block * kBlockSize + lane + kAhead, order.size() - 1);
+    __builtin_prefetch(&cloud.positions[order[later] & kIndexMask]);
     const std::size_t slot = std::min(block * kBlockSize + lane, order.size() - 1);
     const auto index = static_cast<std::uint32_t>(order[slot] & kIndexMask);
     const Eigen::Vector3f& p = cloud.positions[index];

@@ -24,7 +24,8 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 /// Values found by hand: distances 0.25 and 3 one way; 0.25, 3 and 5 the other.
-const PointCloud kReference = small_map({{0, 0, 0}, {8, 0, 0}, {0, 5.25f, 0}}, {Rgb8{0, 0, 0}, Rgb8{0, 255, 0}, Rgb8{0, 0, 0}});
+const PointCloud kReference =
+    small_map({{0, 0, 0}, {8, 0, 0}, {0, 5.25f, 0}}, {Rgb8{0, 0, 0}, Rgb8{0, 255, 0}, Rgb8{0, 0, 0}});
 const PointCloud kEstimate = small_map({{0, 0.25f, 0}, {8, 3, 0}}, {Rgb8{0, 0, 0}, Rgb8{0, 0, 0}});
 
 Json fields(const Evaluation& evaluation, std::string_view id) {
@@ -255,8 +256,11 @@ TEST(Evaluation, OtherToolsAreAddedByName) {
 }
 
 TEST(Evaluation, BrokenMapsAreInputErrors) {
-  EXPECT_THAT(refusal_of<InputError>([] { evaluate({}, kEstimate, EvaluationOptions{}); }), HasSubstr("the reference has no points"));
-  EXPECT_THAT(refusal_of<InputError>([] { evaluate(kReference, gray_map({{NAN, 0, 0}}), EvaluationOptions{}); }),
+  EXPECT_THAT(refusal_of<InputError>([] { evaluate({}, kEstimate, EvaluationOptions{}); }),
+              HasSubstr("the reference has no points"));
+  EXPECT_THAT(refusal_of<InputError>([] {
+                evaluate(kReference, gray_map({{NAN, 0, 0}}), EvaluationOptions{});
+              }),
               HasSubstr("the estimate has a point that is not finite"));
 }
 

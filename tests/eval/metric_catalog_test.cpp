@@ -41,14 +41,13 @@ struct Fixed {
 };
 
 TEST(MetricCatalog, SymbolsUnitsAndDirectionsAreThoseOfTheDefinitions) {
-  for (const Fixed& fixed : {Fixed{"color_distance", "CD", "unit RGB", "lower"}, Fixed{"color_fidelity", "CF", "dB", "higher"},
-                             Fixed{"local_color_recall", "LCR", "1", "higher"},
-                             Fixed{"color_consistency", "CCS", "unit RGB^2", "lower"}, Fixed{"chamfer", "CD#", "m", "lower"},
-                             Fixed{"accuracy", "AC", "m", "lower"}, Fixed{"f_score", "F", "1", "higher"},
-                             Fixed{"overlap", "Overlap", "1", "higher"}, Fixed{"rmse", "RMSE", "m", "lower"},
-                             Fixed{"average_wasserstein", "AWD", "m", "lower"},
-                             Fixed{"spatial_consistency", "SCS", "1", "lower"},
-                             Fixed{"mean_map_entropy", "MME", "nats", "lower"}}) {
+  for (const Fixed& fixed :
+       {Fixed{"color_distance", "CD", "unit RGB", "lower"}, Fixed{"color_fidelity", "CF", "dB", "higher"},
+        Fixed{"local_color_recall", "LCR", "1", "higher"}, Fixed{"color_consistency", "CCS", "unit RGB^2", "lower"},
+        Fixed{"chamfer", "CD#", "m", "lower"}, Fixed{"accuracy", "AC", "m", "lower"},
+        Fixed{"f_score", "F", "1", "higher"}, Fixed{"overlap", "Overlap", "1", "higher"},
+        Fixed{"rmse", "RMSE", "m", "lower"}, Fixed{"average_wasserstein", "AWD", "m", "lower"},
+        Fixed{"spatial_consistency", "SCS", "1", "lower"}, Fixed{"mean_map_entropy", "MME", "nats", "lower"}}) {
     SCOPED_TRACE(fixed.id);
     const MetricInfo* metric = find_metric(fixed.id);
     ASSERT_NE(metric, nullptr);
@@ -84,7 +83,8 @@ TEST(FindMetric, TakesIdsAndSymbolsInAnyCase) {
 }
 
 TEST(FindMetric, FindsNothingElse) {
-  for (const char* name : {"", "colour_distance", "LCR ", "CD##", "color", "chamfe"}) EXPECT_EQ(find_metric(name), nullptr) << name;
+  for (const char* name : {"", "colour_distance", "LCR ", "CD##", "color", "chamfe"})
+    EXPECT_EQ(find_metric(name), nullptr) << name;
 }
 
 TEST(SelectMetrics, DefaultIsColorGeometryAndDistribution) {
@@ -114,8 +114,11 @@ TEST(SelectMetrics, ColorIsRequiredWhereItIsNamed) {
 }
 
 TEST(SelectMetrics, RefusesAnUnknownName) {
-  EXPECT_THAT(test::refusal_of<UsageError>([] { ids_of({"geometry", "lidar"}); }),
-              AllOf(HasSubstr("\"lidar\" is unknown"), HasSubstr("distribution, mme, all"), HasSubstr("color_fidelity")));
+  EXPECT_THAT(
+      test::refusal_of<UsageError>([] {
+        ids_of({"geometry", "lidar"});
+      }),
+      AllOf(HasSubstr("\"lidar\" is unknown"), HasSubstr("distribution, mme, all"), HasSubstr("color_fidelity")));
 }
 
 }  // namespace

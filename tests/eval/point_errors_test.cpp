@@ -57,7 +57,8 @@ Columns read_columns(const std::filesystem::path& path) {
   return columns;
 }
 
-const PointCloud kReference = small_map({{0, 0, 0}, {8, 0, 0}, {0, 5.25f, 0}}, {Rgb8{0, 0, 0}, Rgb8{0, 255, 0}, Rgb8{51, 0, 0}});
+const PointCloud kReference =
+    small_map({{0, 0, 0}, {8, 0, 0}, {0, 5.25f, 0}}, {Rgb8{0, 0, 0}, Rgb8{0, 255, 0}, Rgb8{51, 0, 0}});
 const PointCloud kEstimate = small_map({{8, 3, 0}, {0, 0.25f, 0}}, {Rgb8{0, 255, 0}, Rgb8{51, 0, 0}});
 
 Columns estimate_errors(const Evaluation& evaluation) {
@@ -74,9 +75,9 @@ Columns reference_errors(const Evaluation& evaluation) {
 
 TEST(EstimateErrors, AreScalarFieldsInOriginalOrder) {
   const Columns columns = estimate_errors(evaluate(kReference, kEstimate, EvaluationOptions{}));
-  EXPECT_THAT(columns.types,
-              ElementsAre(Pair("x", "float"), Pair("y", "float"), Pair("z", "float"), Pair("red", "uchar"), Pair("green", "uchar"),
-                          Pair("blue", "uchar"), Pair("scalar_distance_m", "float"), Pair("scalar_color_distance", "float")));
+  EXPECT_THAT(columns.types, ElementsAre(Pair("x", "float"), Pair("y", "float"), Pair("z", "float"),
+                                         Pair("red", "uchar"), Pair("green", "uchar"), Pair("blue", "uchar"),
+                                         Pair("scalar_distance_m", "float"), Pair("scalar_color_distance", "float")));
   EXPECT_THAT(columns.values.at("x"), ElementsAre(8, 0));
   EXPECT_THAT(columns.values.at("y"), ElementsAre(3, 0.25));
   EXPECT_THAT(columns.values.at("green"), ElementsAre(255, 0));
@@ -89,7 +90,8 @@ TEST(ReferenceErrors, SayWhatLocalColorRecallFound) {
   EXPECT_EQ(columns.types.back(), (std::pair<std::string, std::string>("scalar_lcr", "float")));
   EXPECT_THAT(columns.values.at("x"), ElementsAre(0, 8, 0));
   EXPECT_THAT(columns.values.at("scalar_distance_m"), ElementsAre(0.25, 3, 5));
-  EXPECT_THAT(columns.values.at("scalar_lcr"), ElementsAre(2, 0, 0)) << "0.2 is within 3 tau; the others are too far away";
+  EXPECT_THAT(columns.values.at("scalar_lcr"), ElementsAre(2, 0, 0))
+      << "0.2 is within 3 tau; the others are too far away";
   EvaluationOptions strict;
   strict.lcr_tau = 0.05;
   EXPECT_THAT(reference_errors(evaluate(kReference, kEstimate, strict)).values.at("scalar_lcr"), ElementsAre(1, 0, 0));
@@ -131,7 +133,8 @@ TEST(PointErrors, KeepManyPointsInOrder) {
     ASSERT_EQ(columns.values.at("x")[i], estimate.positions[i].x());
     ASSERT_EQ(columns.values.at("blue")[i], colors[i][2]);
     double nearest = INFINITY;
-    for (std::size_t j = 0; j < reference.size(); ++j) nearest = std::min(nearest, (estimate.world(i) - reference.world(j)).norm());
+    for (std::size_t j = 0; j < reference.size(); ++j)
+      nearest = std::min(nearest, (estimate.world(i) - reference.world(j)).norm());
     ASSERT_NEAR(columns.values.at("scalar_distance_m")[i], nearest, 1e-6 * nearest) << i;
   }
 }

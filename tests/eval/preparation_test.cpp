@@ -136,7 +136,8 @@ TEST(Preparation, WarnsOfBoxesApart) {
 TEST(Preparation, WarnsOfSizesAHundredfoldApart) {
   for (const auto& [side, warns] : {std::pair{4.0f * 99, false}, {4.0f * 101, true}}) {
     const Prepared maps = prepared(kCorners, gray_map({{0, 0, 0}, {side, side, side}}));
-    EXPECT_EQ(warning_ids(maps.warnings), warns ? std::vector<std::string>{"units_or_frame_mismatch"} : std::vector<std::string>{})
+    EXPECT_EQ(warning_ids(maps.warnings),
+              warns ? std::vector<std::string>{"units_or_frame_mismatch"} : std::vector<std::string>{})
         << side;
   }
 }
@@ -153,8 +154,10 @@ TEST(Preparation, RefusesAMapWithoutPoints) {
 TEST(Preparation, RefusesAPointThatIsNotFinite) {
   for (float bad : {NAN, INFINITY, -INFINITY}) {
     const PointCloud broken = gray_map({{0, 0, 0}, {0, bad, 0}});
-    EXPECT_THAT(refusal_of<InputError>([&] { prepared(broken, kCorners); }), HasSubstr("the reference has a point that is not finite"));
-    EXPECT_THAT(refusal_of<InputError>([&] { prepared(kCorners, broken); }), HasSubstr("the estimate has a point that is not finite"));
+    EXPECT_THAT(refusal_of<InputError>([&] { prepared(broken, kCorners); }),
+                HasSubstr("the reference has a point that is not finite"));
+    EXPECT_THAT(refusal_of<InputError>([&] { prepared(kCorners, broken); }),
+                HasSubstr("the estimate has a point that is not finite"));
   }
 }
 

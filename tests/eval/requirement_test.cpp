@@ -14,8 +14,16 @@ using ::testing::StartsWith;
 /// A record as evaluations make them.
 Evaluation evaluation() {
   using Json = nlohmann::ordered_json;
-  Evaluation result{{}, Eigen::Matrix4d::Identity(), 0.0, 0.0, {}, {}, {}, {},
-                    {IndexedMap(test::gray_map({{0, 0, 0}})), IndexedMap(test::gray_map({{0, 0, 0}})), {}, {}}, {}};
+  Evaluation result{{},
+                    Eigen::Matrix4d::Identity(),
+                    0.0,
+                    0.0,
+                    {},
+                    {},
+                    {},
+                    {},
+                    {IndexedMap(test::gray_map({{0, 0, 0}})), IndexedMap(test::gray_map({{0, 0, 0}})), {}, {}},
+                    {}};
   const auto add = [&](const char* id, const char* fields) {
     result.metrics.push_back({find_metric(id), Json::parse(fields)});
   };
@@ -34,25 +42,32 @@ EvaluationOptions all_metrics() {
   return options;
 }
 
-RequirementOutcome outcome(const std::string& text) { return check(parse_requirement(text, all_metrics()), evaluation()); }
+RequirementOutcome outcome(const std::string& text) {
+  return check(parse_requirement(text, all_metrics()), evaluation());
+}
 
-std::string refusal(const std::string& text) { return refusal_of<UsageError>([&] { outcome(text); }); }
+std::string refusal(const std::string& text) {
+  return refusal_of<UsageError>([&] { outcome(text); });
+}
 
 TEST(Requirement, EveryComparisonDecidesAtItsBound) {
-  for (const char* holds : {"LCR>=0.25", "LCR<=0.25", "LCR==0.25", "LCR>0.2", "LCR<0.3"}) EXPECT_TRUE(outcome(holds).holds) << holds;
-  for (const char* fails : {"LCR>0.25", "LCR<0.25", "LCR==0.2", "LCR>=0.3", "LCR<=0.2"}) EXPECT_FALSE(outcome(fails).holds) << fails;
+  for (const char* holds : {"LCR>=0.25", "LCR<=0.25", "LCR==0.25", "LCR>0.2", "LCR<0.3"})
+    EXPECT_TRUE(outcome(holds).holds) << holds;
+  for (const char* fails : {"LCR>0.25", "LCR<0.25", "LCR==0.2", "LCR>=0.3", "LCR<=0.2"})
+    EXPECT_FALSE(outcome(fails).holds) << fails;
   EXPECT_EQ(outcome("LCR>=0.3").value, 0.25);
 }
 
 TEST(Requirement, TakesIdsAndSymbolsInAnyCase) {
-  for (const char* text : {"local_color_recall>=0.25", "Local_Color_Recall>=0.25", "lcr>=0.25", "CD#<=0.125", "cd#<=0.125",
-                           "chamfer<=0.125", "CHAMFER<=0.125", "AC@0.2<=0.05", "ac@0.2<=0.05"}) {
+  for (const char* text : {"local_color_recall>=0.25", "Local_Color_Recall>=0.25", "lcr>=0.25", "CD#<=0.125",
+                           "cd#<=0.125", "chamfer<=0.125", "CHAMFER<=0.125", "AC@0.2<=0.05", "ac@0.2<=0.05"}) {
     EXPECT_TRUE(outcome(text).holds) << text;
   }
 }
 
 TEST(Requirement, TakesBlanksAndEveryNotationOfANumber) {
-  for (const char* text : {" LCR >= 2.5e-1 ", "LCR>=+0.25", "LCR>=-1", "LCR>=.25", "accuracy@2e-1<=0.05", "accuracy@0.20<=0.05"}) {
+  for (const char* text :
+       {" LCR >= 2.5e-1 ", "LCR>=+0.25", "LCR>=-1", "LCR>=.25", "accuracy@2e-1<=0.05", "accuracy@0.20<=0.05"}) {
     EXPECT_TRUE(outcome(text).holds) << text;
   }
 }
@@ -73,7 +88,8 @@ TEST(Requirement, SelectsAFieldByItsPath) {
 }
 
 TEST(Requirement, ANullFailsWhateverTheComparison) {
-  for (const char* text : {"LCR.conditional>=0", "LCR.conditional<=1", "CF>=0", "CF<=1e9", "accuracy@0.1<=1", "CF==0"}) {
+  for (const char* text :
+       {"LCR.conditional>=0", "LCR.conditional<=1", "CF>=0", "CF<=1e9", "accuracy@0.1<=1", "CF==0"}) {
     EXPECT_FALSE(outcome(text).holds) << text;
     EXPECT_EQ(outcome(text).value, std::nullopt) << text;
   }
@@ -83,7 +99,9 @@ TEST(Requirement, ANullFailsWhateverTheComparison) {
 TEST(Requirement, RefusesWhatIsNoCondition) {
   for (const char* text : {"", "LCR", "LCR>=", ">=0.2", "LCR=0.2", "LCR=>0.2", "LCR>=0.2 m", "LCR>=0.2,CD<=1", "LCR!=1",
                            "LCR>=abc", "LCR..x>=1", "accuracy@<=1"}) {
-    EXPECT_THAT(refusal(text), AllOf(StartsWith("require \"" + std::string(text) + "\": "), HasSubstr("expected METRIC"))) << text;
+    EXPECT_THAT(refusal(text),
+                AllOf(StartsWith("require \"" + std::string(text) + "\": "), HasSubstr("expected METRIC")))
+        << text;
   }
 }
 
@@ -97,13 +115,12 @@ TEST(Requirement, RefusesABoundThatIsNotFinite) {
   EXPECT_THAT(refusal("chamfer<=1e999"), HasSubstr("\"1e999\" is not a number")) << "it would hold for every map";
 }
 
-TEST(Requirement, RefusesAnUnknownMetric) {
-  EXPECT_THAT(refusal("lidar>=1"), HasSubstr("unknown metric \"lidar\""));
-}
+TEST(Requirement, RefusesAnUnknownMetric) { EXPECT_THAT(refusal("lidar>=1"), HasSubstr("unknown metric \"lidar\"")); }
 
 TEST(Requirement, RefusesAMetricThatIsNotComputed) {
   const auto parse = [] { parse_requirement("LCR>=0.2", options_for({"geometry"})); };
-  EXPECT_THAT(refusal_of<UsageError>(parse), AllOf(HasSubstr("local_color_recall is not computed"), HasSubstr("--metrics")));
+  EXPECT_THAT(refusal_of<UsageError>(parse),
+              AllOf(HasSubstr("local_color_recall is not computed"), HasSubstr("--metrics")));
 }
 
 TEST(Requirement, RefusesAWrongThreshold) {

@@ -34,7 +34,8 @@ Json parsed(const char* json) { return Json::parse(json); }
 
 TEST(Report, HasEverySectionInOrder) {
   const Json report = report_of(kReference, kEstimate);
-  EXPECT_THAT(keys(report), ElementsAre("schema", "tool", "inputs", "parameters", "alignment", "metrics", "warnings", "run"));
+  EXPECT_THAT(keys(report),
+              ElementsAre("schema", "tool", "inputs", "parameters", "alignment", "metrics", "warnings", "run"));
   EXPECT_EQ(report.at("schema"), "cmap.report/1");
   EXPECT_EQ(report.at("tool"), Json({{"name", "cmap_eval"}, {"version", kVersion}}));
 }
@@ -43,7 +44,8 @@ TEST(Report, DescribesItsInputs) {
   PointCloud reference = kReference;
   reference.origin = {500000, 4000000, 100};
   const Json input = report_of(reference, kEstimate).at("inputs").at("reference");
-  EXPECT_EQ(input, parsed(R"({"path": "ref.ply", "sha256": "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa",
+  EXPECT_EQ(input,
+            parsed(R"({"path": "ref.ply", "sha256": "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa",
       "format": "PLY ascii", "points": 2, "finite_points": 2, "color": "u8", "origin_m": [500000.0, 4000000.0, 100.0],
       "bounds_m": {"min": [500000.0, 4000000.0, 100.0], "max": [500002.0, 4000000.0, 100.0]}})"));
 }
@@ -76,8 +78,10 @@ TEST(Report, HoldsEveryParameterByTheCommandLinesName) {
 }
 
 TEST(Report, SaysThatNothingWasAligned) {
-  EXPECT_EQ(report_of(kReference, kEstimate).at("alignment"),
-            parsed(R"({"method": "none", "T_ref_est": [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]],
+  EXPECT_EQ(
+      report_of(kReference, kEstimate).at("alignment"),
+      parsed(
+          R"({"method": "none", "T_ref_est": [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]],
                        "scale": 1.0, "before": null, "overlap": 1.0, "rmse_m": 0.5})"));
 }
 
@@ -126,18 +130,21 @@ TEST(Report, WarnsOfWhatReadersDecided) {
 }
 
 TEST(Report, WarningsOfTheEvaluationFollow) {
-  const Json warnings = report_of(kReference, gray_map({{50, 0, 0}, {51, 0, 0}}), options_for({"chamfer"})).at("warnings");
+  const Json warnings =
+      report_of(kReference, gray_map({{50, 0, 0}, {51, 0, 0}}), options_for({"chamfer"})).at("warnings");
   ASSERT_EQ(warnings.size(), 2U);
   EXPECT_EQ(warnings[0].at("id"), "units_or_frame_mismatch");
   EXPECT_EQ(warnings[1].at("id"), "no_overlap");
-  EXPECT_EQ(report_of(kReference, kEstimate, options_for({"chamfer"})).at("warnings"), Json::array()) << "an empty list, never absent";
+  EXPECT_EQ(report_of(kReference, kEstimate, options_for({"chamfer"})).at("warnings"), Json::array())
+      << "an empty list, never absent";
 }
 
 TEST(Report, DescribesTheRun) {
   Json run = report_of(kReference, kEstimate).at("run");
   EXPECT_GT(run.at("peak_memory_bytes"), 1000000);
   run.erase("peak_memory_bytes");
-  EXPECT_EQ(run, parsed(R"({"command": "cmap_eval ref.ply est.ply", "started_utc": "2024-05-06T07:08:09Z", "wall_s": 1.5,
+  EXPECT_EQ(run,
+            parsed(R"({"command": "cmap_eval ref.ply est.ply", "started_utc": "2024-05-06T07:08:09Z", "wall_s": 1.5,
                             "stages": {"read": 0.5, "index": 1.0}, "threads": 2, "simd": "avx2"})"));
 }
 
@@ -175,7 +182,8 @@ TEST(Report, NumbersSurviveTheirText) {
 TEST(Report, MissingNumbersAreNull) {
   const Json report = report_of(small_map({{0, 0, 0}}), small_map({{100, 0, 0}}), options_for({"all"}));
   const Json metrics = report.at("metrics");
-  for (const char* id : {"color_distance", "color_psnr", "color_consistency", "average_wasserstein", "mean_map_entropy"}) {
+  for (const char* id :
+       {"color_distance", "color_psnr", "color_consistency", "average_wasserstein", "mean_map_entropy"}) {
     EXPECT_TRUE(metrics.at(id).at("value").is_null()) << id;
   }
   EXPECT_TRUE(metrics.at("rmse").at("inlier_rmse").is_null());

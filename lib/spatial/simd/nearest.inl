@@ -4,7 +4,7 @@ namespace cmap::CMAP_LANES {
 namespace {
 
 constexpr std::uint32_t kAllLanes = 0xffff;
-constexpr std::uint32_t kUnknownIndex = ~0u;
+constexpr std::uint32_t kNoBlock = ~0u;
 
 /// Float squared distances up to this factor above the best are compared with it in double.
 constexpr float kReach = static_cast<float>(1.0 + kRounding);
@@ -31,44 +31,43 @@ class NearestGroup {
     store(x_, q_.x);
     store(y_, q_.y);
     store(z_, q_.z);
-    for (int lane = 0; lane < 16; ++lane) exact_[lane].index = kUnknownIndex;
   }
 
   /// Scans blocks that probably hold the answer, so that the walk starts with a tight bound.
   void start_from(const std::uint32_t* guesses, int n) {
-    for (n_scanned_ = 0; n_scanned_ < n; ++n_scanned_) {
-      scanned_[n_scanned_] = guesses[n_scanned_];
-      compare_with(guesses[n_scanned_]);
+    for (int i = 0; i < n; ++i) {
+      scanned_[i] = guesses[i];
+      compare_with(guesses[i]);
     }
   }
 
   void search() { walk(tree_, box_, *this); }
 
-  Mask16 children(int level, std::uint32_t node, const Float16& sq_dist) const {
+  Mask16 children(int level, std::uint32_t node, const Float16& sq_dist) {
+    bound_ = highest(best_);
     std::uint32_t enter = bits(less_equal(sq_dist, broadcast(bound_ * kReach)));
-    std::uint32_t tied = enter & ~bits(less(sq_dist, broadcast(bound_)));
-    if (!any_exact_) tied = 0;
-    for (; tied != 0; tied &= tied - 1) {
+    if (known_ == 0) return mask_from_bits(enter);
+    for (std::uint32_t tied = enter & ~bits(less(sq_dist, broadcast(bound_))); tied != 0; tied &= tied - 1) {
       const int c = first_bit(tied);
       if (!can_settle(level, node, c, kAllLanes)) enter &= ~(1u << c);
     }
     return mask_from_bits(enter);
   }
 
+  /// By the bound when the last node was entered, which is never too low.
   bool still(float sq_dist) const { return sq_dist <= bound_ * kReach; }
 
   bool matters(int level, std::uint32_t node, int c) const {
     const Float16 sq_dist = sq_dist_to_child(tree_.boxes[level][node], c, q_);
     const std::uint32_t within = bits(less_equal(sq_dist, best_ * broadcast(kReach)));
-    if (within == 0 || !any_exact_ || bits(less(sq_dist, best_)) != 0) return within != 0;
+    if (within == 0 || known_ == 0 || bits(less(sq_dist, best_)) != 0) return within != 0;
     return can_settle(level, node, c, within);
   }
 
   void scan(std::uint32_t block) {
-    for (int i = 0; i < n_scanned_; ++i) {
-      if (scanned_[i] == block) return;
-    }
-    compare_with(block);
+    const bool is_scanned =
+        (block == scanned_[0]) | (block == scanned_[1]) | (block == scanned_[2]) | (block == scanned_[3]);
+    if (!is_scanned) compare_with(block);
   }
 
   /// The nearest point of every lane.
@@ -76,11 +75,15 @@ class NearestGroup {
     alignas(64) float best[16];
     store(best, best_);
     for (int lane = 0; lane < 16; ++lane) {
-      const bool is_known = exact_[lane].index != kUnknownIndex;
-      nearest[lane] = is_known ? exact_[lane] : exact_in_block(lane, block_[lane], best[lane]);
+      nearest[lane] = is_known(lane) ? exact_[lane] : exact_in_block(lane, block_of(lane), best[lane]);
     }
   }
-  std::uint32_t block_of(int lane) const { return block_[lane]; }
+
+  std::uint32_t block_of(int lane) const {
+    alignas(64) float blocks[16];
+    store(blocks, block_);
+    return __builtin_bit_cast(std::uint32_t, blocks[lane]);
+  }
 
  private:
   void compare_with(std::uint32_t block) {
@@ -89,17 +92,16 @@ class NearestGroup {
     for (std::size_t k = 0; k < kBlockSize; ++k) {
       nearest = min(sq_dist_to(q_, points.x[k], points.y[k], points.z[k]), nearest);
     }
-    const std::uint32_t within = bits(less_equal(nearest, best_ * broadcast(kReach)));
-    if (within == 0) return;
-    const std::uint32_t nearer = bits(less(nearest * broadcast(kReach), best_));
-    if ((within & ~nearer) != 0) settle(within & ~nearer, block, min(nearest, best_));
-    for (std::uint32_t rest = nearer; rest != 0; rest &= rest - 1) {
-      block_[first_bit(rest)] = block;
-      exact_[first_bit(rest)].index = kUnknownIndex;
-    }
+    const Mask16 nearer = less(nearest * broadcast(kReach), best_);
+    const std::uint32_t unsettled = bits(less_equal(nearest, best_ * broadcast(kReach))) & ~bits(nearer);
+    if (unsettled != 0) settle(unsettled, block, min(nearest, best_));
+    // Block numbers travel as the bits of floats: lanes are only selected, never computed with.
+    block_ = select(nearer, broadcast(__builtin_bit_cast(float, block)), block_);
+    known_ &= ~bits(nearer);
     best_ = min(nearest, best_);
-    bound_ = highest(best_);
   }
+
+  bool is_known(int lane) const { return (known_ >> lane & 1u) != 0; }
 
   /// Lanes whose best so far and best in `block` are too close for float.
   void settle(std::uint32_t lanes, std::uint32_t block, const Float16& lowest_sq_dist) {
@@ -107,14 +109,11 @@ class NearestGroup {
     store(best, lowest_sq_dist);
     for (; lanes != 0; lanes &= lanes - 1) {
       const int lane = first_bit(lanes);
-      if (exact_[lane].index == kUnknownIndex) exact_[lane] = exact_in_block(lane, block_[lane], best[lane]);
-      const Candidate other = exact_in_block(lane, block, best[lane]);
-      if (comes_before(other, exact_[lane])) {
-        exact_[lane] = other;
-        block_[lane] = block;
-      }
+      const Candidate first = is_known(lane) ? exact_[lane] : exact_in_block(lane, block_of(lane), best[lane]);
+      const Candidate second = exact_in_block(lane, block, best[lane]);
+      exact_[lane] = comes_before(second, first) ? second : first;
+      known_ |= 1u << lane;
     }
-    any_exact_ = true;
   }
 
   /// Whether a child no nearer than the best so far may still win one of the lanes in double or by its index. Without
@@ -129,11 +128,10 @@ class NearestGroup {
       const double dy = gap_in_double(y_[lane], boxes.min_y[c], boxes.max_y[c]);
       const double dz = gap_in_double(z_[lane], boxes.min_z[c], boxes.max_z[c]);
       const double sq_dist = dx * dx + dy * dy + dz * dz;
-      const Candidate& exact = exact_[lane];
-      if (exact.index == kUnknownIndex ? sq_dist <= static_cast<double>(best[lane] * kReach)
-                                       : comes_before({sq_dist, tree_.lowest_index[level][node].child[c], 0}, exact)) {
-        return true;
-      }
+      const bool may_win = is_known(lane)
+                               ? comes_before({sq_dist, tree_.lowest_index[level][node].child[c], 0}, exact_[lane])
+                               : sq_dist <= static_cast<double>(best[lane] * kReach);
+      if (may_win) return true;
     }
     return false;
   }
@@ -143,7 +141,7 @@ class NearestGroup {
     const PointBlock& p = tree_.blocks[block];
     const Float16 sq_dist = sq_dist_to({load(p.x), load(p.y), load(p.z)}, x_[lane], y_[lane], z_[lane]);
     std::uint32_t within = bits(less_equal(sq_dist, broadcast(best * kReach)));
-    Candidate nearest{static_cast<double>(kInfinity), kUnknownIndex, 0};
+    Candidate nearest{static_cast<double>(kInfinity), ~0u, 0};
     for (; within != 0; within &= within - 1) {
       const auto k = static_cast<std::uint32_t>(first_bit(within));
       const double dx = static_cast<double>(x_[lane]) - static_cast<double>(p.x[k]);
@@ -161,12 +159,11 @@ class NearestGroup {
   const LaneBox box_;
   Float16 best_ = broadcast(kInfinity);
   float bound_ = __FLT_MAX__ / 2;  // an absent child is at infinity, never within the bound
-  bool any_exact_ = false;
+  Float16 block_ = broadcast(0.0f);
+  std::uint32_t known_ = 0;  ///< lanes whose nearest point is in exact_
   alignas(64) float x_[16], y_[16], z_[16];
-  std::uint32_t block_[16] = {};
   Candidate exact_[16];
-  std::uint32_t scanned_[4];
-  int n_scanned_ = 0;
+  std::uint32_t scanned_[4] = {kNoBlock, kNoBlock, kNoBlock, kNoBlock};
 };
 
 /// Distinct blocks that hold the neighbors of some lanes: the next group starts from them.

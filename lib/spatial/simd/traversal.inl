@@ -91,20 +91,6 @@ inline LaneBox box_of(const Lanes3& q, Mask16 active) {
 
 inline int first_bit(std::uint32_t bits_set) { return __builtin_ctz(bits_set); }
 
-/// Scans those blocks below a node of the lowest level that matter to a lane. They are all tested before the first
-/// scan: the tests overlap in the processor, which is worth more than a bound from the scans before.
-template <class Reach>
-inline void scan_children(std::uint32_t node, std::uint32_t candidates, Reach& reach) {
-  std::uint32_t mattering = 0;
-  for (; candidates != 0; candidates &= candidates - 1) {
-    const int c = first_bit(candidates);
-    mattering |= static_cast<std::uint32_t>(reach.matters(0, node, c)) << c;
-  }
-  for (; mattering != 0; mattering &= mattering - 1) {
-    reach.scan(node * static_cast<std::uint32_t>(kBlockSize) + static_cast<std::uint32_t>(first_bit(mattering)));
-  }
-}
-
 /// Walks down to the blocks that may matter. `reach` has
 ///   Mask16 children(level, node, sq_dist)   which children may matter, by their distances to the group's box,
 ///   bool still(sq_dist)                     whether a child at this distance still may, after what was found since,
@@ -131,15 +117,15 @@ inline void walk(const Tree& tree, const LaneBox& box, Reach& reach) {
     const Float16 distances = sq_dist_to_children(tree.boxes[top.level][top.node], box);
     std::uint32_t enter = bits(reach.children(top.level, top.node, distances));
     if (enter == 0) continue;
-    if (top.level == 0) {
-      scan_children(top.node, enter, reach);
-      continue;
-    }
     store(sq_dist, distances);
     for (; enter != 0; enter &= enter - 1) {
       const int c = first_bit(enter);
-      stack[n_pending++] = {
-          sq_dist[c], top.node * static_cast<std::uint32_t>(kBlockSize) + static_cast<std::uint32_t>(c), top.level - 1};
+      const std::uint32_t child = top.node * static_cast<std::uint32_t>(kBlockSize) + static_cast<std::uint32_t>(c);
+      if (top.level > 0) {
+        stack[n_pending++] = {sq_dist[c], child, top.level - 1};
+      } else if (reach.matters(0, top.node, c)) {
+        reach.scan(child);
+      }
     }
   }
 }

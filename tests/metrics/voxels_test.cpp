@@ -1,0 +1,104 @@
+#include "metrics/voxels.hpp"
+
+#include <array>
+#include <map>
+#include <set>
+
+#include "metrics/map_pairs.hpp"
+
+namespace cmap {
+namespace {
+
+using Key = std::array<std::int32_t, 3>;
+
+Key array_of(const VoxelKey& key) { return {key.x, key.y, key.z}; }
+
+/// More points than one chunk of the loops, over cells on all sides of zero.
+PointBlocks sorted_sheet() {
+  PointCloud cloud = test::sheet_cloud(150000, 1, 60.0f);
+  for (Eigen::Vector3f& p : cloud.positions) p -= Eigen::Vector3f(30, 30, 30);
+  return sort_points(cloud);
+}
+
+Box3d box_of(const PointBlocks& points) {
+  Box3d box{points.world(0), points.world(0)};
+  for (std::size_t slot = 0; slot < points.size; ++slot) {
+    box.min = box.min.cwiseMin(points.world(slot));
+    box.max = box.max.cwiseMax(points.world(slot));
+  }
+  return box;
+}
+
+TEST(CellRuns, HoldEverySlotOnceInItsCell) {
+  const PointBlocks points = sorted_sheet();
+  const VoxelFrame frame(box_of(points), 0.25);
+  std::vector<int> seen(points.size, 0);
+  for (const CellRun& run : cell_runs(points, frame)) {
+    ASSERT_LT(run.begin, run.end);
+    for (std::size_t slot = run.begin; slot < run.end; ++slot) {
+      const VoxelKey key = frame.key(points.world(slot));
+      // Keys count from the box's lowest corner: 32 voxels a cell.
+      EXPECT_EQ(array_of(run.cell), (Key{key.x / 32, key.y / 32, key.z / 32}));
+      ++seen[slot];
+    }
+  }
+  EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), static_cast<long>(points.size));
+}
+
+TEST(CellRuns, OfOneCellFollowEachOther) {
+  const PointBlocks points = sorted_sheet();
+  const std::vector<CellRun> runs = cell_runs(points, VoxelFrame(box_of(points), 0.25));
+  std::set<Key> closed;
+  for (std::size_t i = 1; i < runs.size(); ++i) {
+    if (runs[i].cell == runs[i - 1].cell) {
+      EXPECT_LE(runs[i - 1].end, runs[i].begin);
+    } else {
+      EXPECT_TRUE(closed.insert(array_of(runs[i - 1].cell)).second);
+    }
+  }
+  EXPECT_GT(closed.size(), 10U);
+}
+
+struct CountedVoxel {
+  VoxelKey key;
+  std::uint64_t n;
+};
+
+auto count_points(const PointBlocks& points, const VoxelFrame& frame, std::uint64_t min_points) {
+  return collect_voxels<std::uint64_t>(
+      points, frame, [](std::uint64_t& n, std::size_t, const Eigen::Vector3d&, const VoxelKey&) { ++n; },
+      [&](const VoxelKey& key, std::uint64_t n) -> std::optional<CountedVoxel> {
+        if (n < min_points) return std::nullopt;
+        return CountedVoxel{key, n};
+      });
+}
+
+TEST(CollectVoxels, CountsLikeAMap) {
+  const PointBlocks points = sorted_sheet();
+  for (double voxel_m : {0.1, 1.0, 200.0}) {
+    const VoxelFrame frame(box_of(points), voxel_m);
+    std::map<Key, std::uint64_t> expected;
+    for (std::size_t slot = 0; slot < points.size; ++slot) ++expected[array_of(frame.key(points.world(slot)))];
+    const auto found = count_points(points, frame, 1);
+    EXPECT_EQ(found.results.size(), expected.size());
+    EXPECT_EQ(found.n_without_result, 0U);
+    for (const CountedVoxel& voxel : found.results) EXPECT_EQ(voxel.n, expected[array_of(voxel.key)]);
+
+    const auto full = count_points(points, frame, 40);
+    EXPECT_EQ(full.results.size() + full.n_without_result, expected.size());
+    for (const CountedVoxel& voxel : full.results) EXPECT_GE(voxel.n, 40U);
+  }
+}
+
+TEST(CollectVoxels, InTheSameOrderForAnyNumberOfThreads) {
+  const PointBlocks points = sorted_sheet();
+  const VoxelFrame frame(box_of(points), 0.25);
+  const auto many = count_points(points, frame, 1);
+  const ThreadLimit limit(1);
+  const auto one = count_points(points, frame, 1);
+  ASSERT_EQ(one.results.size(), many.results.size());
+  for (std::size_t i = 0; i < one.results.size(); ++i) EXPECT_EQ(one.results[i].key, many.results[i].key);
+}
+
+}  // namespace
+}  // namespace cmap

@@ -1,0 +1,65 @@
+# Run by CTest, which sets the variables: see CMakeLists.txt.
+cmake_minimum_required(VERSION 3.22)
+
+set(work ${CMAP_BINARY_DIR}/package_test)
+set(prefix ${work}/prefix)
+file(REMOVE_RECURSE ${work})
+
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT code EQUAL 0)
+    message(FATAL_ERROR "${ARGN} ended with ${code}:\n${output}")
+  endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+function(expect_output pattern)
+  if(NOT output MATCHES "${pattern}")
+    message(FATAL_ERROR "\"${pattern}\" expected in:\n${output}")
+  endif()
+endfunction()
+
+run(${CMAKE_COMMAND} --install ${CMAP_BINARY_DIR} --prefix ${prefix} --config ${CONFIG})
+
+# A package that names folders of the machine that built it would break elsewhere.
+file(GLOB_RECURSE scripts ${prefix}/*.cmake)
+foreach(script IN LISTS scripts)
+  file(READ ${script} text)
+  string(FIND "${text}" "${CMAP_SOURCE_DIR}/" place)
+  if(NOT place EQUAL -1)
+    message(FATAL_ERROR "${script} names ${CMAP_SOURCE_DIR}")
+  endif()
+endforeach()
+
+# Every public header is installed and compiles in the consumer.
+file(GLOB_RECURSE headers RELATIVE ${CMAP_SOURCE_DIR}/include ${CMAP_SOURCE_DIR}/include/*.hpp)
+set(includes "#include \"cmap/core/version.hpp\"\n")
+foreach(header IN LISTS headers)
+  string(APPEND includes "#include \"${header}\"\n")
+endforeach()
+file(WRITE ${work}/all_headers.cpp "${includes}")
+
+foreach(preset paper indoor outdoor aerial mapeval)
+  if(NOT EXISTS ${prefix}/share/cmap/configs/${preset}.json)
+    message(FATAL_ERROR "configs/${preset}.json is not installed")
+  endif()
+endforeach()
+
+run(${CMAKE_COMMAND} -S ${CMAP_SOURCE_DIR}/tests/package/consumer -B ${work}/build -G ${GENERATOR}
+  -DCMAKE_BUILD_TYPE=${CONFIG} -DCMAKE_CXX_COMPILER=${CXX_COMPILER} "-DCMAKE_CXX_FLAGS=${CXX_FLAGS}"
+  "-DCMAKE_EXE_LINKER_FLAGS=${LINKER_FLAGS}" -DCMAKE_PREFIX_PATH=${prefix} -DALL_HEADERS=${work}/all_headers.cpp
+  -DCMAP_VERSION=${CMAP_VERSION} -DCMAKE_RUNTIME_OUTPUT_DIRECTORY=${work}/bin)
+run(${CMAKE_COMMAND} --build ${work}/build --config ${CONFIG})
+
+set(identical ${CMAP_SOURCE_DIR}/data_samples/micro/identical)
+file(GLOB_RECURSE consumer ${work}/bin/consumer)
+file(GLOB_RECURSE eval_only ${work}/bin/eval_only)
+run(${consumer})
+expect_output("LCR +↑ +100.00 %")
+run(${eval_only} ${identical}/reference.ply ${identical}/estimate.ply)
+run(${prefix}/bin/cmap_eval --version)
+expect_output("cmap_eval ${CMAP_VERSION}")
+run(${prefix}/bin/cmap_eval ${identical}/reference.ply ${identical}/estimate.ply
+  --config ${prefix}/share/cmap/configs/indoor.json)
+expect_output("LCR +↑ +100.00 %")
+message(STATUS "installed, found, linked and run")
