@@ -36,15 +36,9 @@ Box3d bounds(const PointCloud& cloud) {
 }
 
 Eigen::Vector3d choose_origin(const Box3d& box) {
-  Eigen::Vector3d origin;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double extent = box.max[axis] - box.min[axis];
-    double unit = 100.0;
-    while (unit < 2.0 * extent) unit *= 10.0;
-    // Not std::round, whose halves go away from zero: a shifted box must round the same way.
-    origin[axis] = std::floor(0.5 * (box.min[axis] + box.max[axis]) / unit + 0.5) * unit + 0.0;  // + 0.0: never -0
-  }
-  return origin;
+  constexpr double kUnit_m = 100.0;
+  // Not std::round, whose halves go away from zero: a shifted box must round the same way. + 0.0: never -0.
+  return (((0.5 * (box.min + box.max)) / kUnit_m).array() + 0.5).floor() * kUnit_m + 0.0;
 }
 
 PointCloud select(const PointCloud& cloud, const Array<std::uint8_t>& keep) {

@@ -102,7 +102,9 @@ ColorPsnr color_psnr(const MapPair& pair) {
 }
 
 Eigen::Vector3d ColorPsnr::psnr_db() const {
+  constexpr double kNoise = 1e-24;  // what rounding leaves of a channel without any difference
   return mse_estimate_to_reference.cwiseMax(mse_reference_to_estimate).unaryExpr([](double mse) {
+    if (mse < kNoise) return std::numeric_limits<double>::infinity();
     return -10.0 * std::log10(mse);
   });
 }

@@ -67,13 +67,29 @@ TEST(Array, GrowingAndMovingKeepTheElements) {
 TEST(AllocateLarge, NoBytesAreStillAnAddress) {
   void* memory = allocate_large(0);
   EXPECT_NE(memory, nullptr);
-  free_large(memory);
+  free_large(memory, 0);
+}
+
+TEST(AllocateLarge, AFreedBlockServesTheNextArrayOfItsSize) {
+  void* first = allocate_large(40 * kMiB);
+  free_large(first, 40 * kMiB);
+  void* smaller = allocate_large(36 * kMiB);
+  EXPECT_EQ(smaller, first);
+  // Freed by its smaller size it is still the block of 40 MiB.
+  free_large(smaller, 36 * kMiB);
+  void* again = allocate_large(40 * kMiB);
+  EXPECT_EQ(again, first);
+  // A third of it would waste the rest.
+  free_large(again, 40 * kMiB);
+  void* third = allocate_large(13 * kMiB);
+  EXPECT_NE(third, first);
+  free_large(third, 13 * kMiB);
 }
 
 TEST(AllocateLarge, SizesThatOverflowAreRefused) {
   // Rounded up to whole huge pages these would wrap around to almost nothing.
-  EXPECT_THROW(free_large(allocate_large(kMaxSize)), std::bad_alloc);
-  EXPECT_THROW(free_large(allocate_large(kMaxSize - 2 * kMiB + 1)), std::bad_alloc);
+  EXPECT_THROW(allocate_large(kMaxSize), std::bad_alloc);
+  EXPECT_THROW(allocate_large(kMaxSize - 2 * kMiB + 1), std::bad_alloc);
 }
 
 TEST(LargeAllocator, CountsThatOverflowAreRefused) {

@@ -50,7 +50,7 @@ ExposureGains exposure_gains(const MapPair& pair, double max_distance_m);
 struct ColorPsnr {
   Eigen::Vector3d mse_estimate_to_reference;
   Eigen::Vector3d mse_reference_to_estimate;
-  /// 10 log10(1 / mse) of the worse direction, per channel; infinite where both are 0.
+  /// 10 log10(1 / mse) of the worse direction, per channel; infinite where both are 0 (below 1e-24: rounding noise).
   Eigen::Vector3d psnr_db() const;
 };
 ColorPsnr color_psnr(const MapPair& pair);

@@ -56,7 +56,7 @@ AverageWasserstein average_wasserstein(std::span<const VoxelDistance> voxels);
 
 /// Spatial consistency SCS: the mean over voxels of the coefficient of variation (population standard deviation / mean)
 /// of the distances of the other voxels within +- radius_voxels on every axis. Voxels without others, or whose others'
-/// mean is 0, are skipped; NaN if that leaves none.
+/// mean is 0, are skipped; NaN if that leaves none. The voxels must be ordered by index.
 struct SpatialConsistency {
   double value = 0.0;
   std::uint64_t n_voxels = 0;  ///< voxels in the mean
