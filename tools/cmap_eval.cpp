@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <filesystem>
 #include <map>
 
 #include "cmap/core/error.hpp"
@@ -128,13 +129,45 @@ bool check_requirements(const std::vector<cmap::Requirement>& requirements, cons
   return all_hold;
 }
 
+/// Inputs are never modified: an output must not be one of them, under whatever name, nor another output.
+void refuse_overwriting(const Arguments& a) {
+  std::vector<std::string> taken{a.reference, a.estimate, a.config, a.transform};
+  for (const std::string& output : {a.output, a.estimate_errors, a.reference_errors}) {
+    for (const std::string& other : taken) {
+      if (output.empty() || other.empty()) continue;
+      std::error_code missing;
+      if (output == other ||
+          (std::filesystem::is_regular_file(output, missing) && std::filesystem::equivalent(output, other, missing))) {
+        throw cmap::UsageError(fmt::format("{}: would overwrite {}", output, other));
+      }
+    }
+    taken.push_back(output);
+  }
+}
+
 void write_outputs(const Arguments& arguments, const cmap::Evaluation& evaluation, const std::string& report_text) {
-  if (!arguments.estimate_errors.empty()) cmap::write_estimate_errors(evaluation, arguments.estimate_errors);
-  if (!arguments.reference_errors.empty()) cmap::write_reference_errors(evaluation, arguments.reference_errors);
-  if (arguments.output.empty()) return;
-  cmap::OutputFile file(arguments.output);
-  file.write(report_text);
-  file.commit();
+  std::vector<std::string> written;
+  try {
+    if (!arguments.estimate_errors.empty()) {
+      cmap::write_estimate_errors(evaluation, arguments.estimate_errors);
+      written.push_back(arguments.estimate_errors);
+    }
+    if (!arguments.reference_errors.empty()) {
+      cmap::write_reference_errors(evaluation, arguments.reference_errors);
+      written.push_back(arguments.reference_errors);
+    }
+    if (arguments.output.empty()) return;
+    cmap::OutputFile file(arguments.output);
+    file.write(report_text);
+    file.commit();
+  } catch (...) {
+    // All outputs or none.
+    std::error_code ignored;
+    for (const std::string& path : written) {
+      if (std::filesystem::is_regular_file(path, ignored)) std::filesystem::remove(path, ignored);
+    }
+    throw;
+  }
 }
 
 ExitCode run(const Arguments& arguments, const std::string& command) {
@@ -147,6 +180,7 @@ ExitCode run(const Arguments& arguments, const std::string& command) {
                            {},
                            cmap::thread_count(),
                            std::string(cmap::simd_level_name(cmap::simd_level()))};
+  refuse_overwriting(arguments);
   const cmap::EvaluationOptions options = resolve_options(arguments);
   std::vector<cmap::Requirement> requirements;
   for (const std::string& text : arguments.requirements) requirements.push_back(cmap::parse_requirement(text, options));

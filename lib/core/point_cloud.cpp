@@ -36,9 +36,14 @@ Box3d bounds(const PointCloud& cloud) {
 }
 
 Eigen::Vector3d choose_origin(const Box3d& box) {
-  constexpr double kUnit_m = 100.0;
-  // Not std::round, whose halves go away from zero: a shifted box must round the same way. + 0.0: never -0.
-  return (((0.5 * (box.min + box.max)) / kUnit_m).array() + 0.5).floor() * kUnit_m + 0.0;
+  Eigen::Vector3d origin;
+  for (int axis = 0; axis < 3; ++axis) {
+    double unit_m = 100.0;
+    while (unit_m < box.max[axis] - box.min[axis]) unit_m *= 10.0;
+    // Not std::round, whose halves go away from zero: a shifted box must round the same way. + 0.0: never -0.
+    origin[axis] = std::floor(0.5 * (box.min[axis] + box.max[axis]) / unit_m + 0.5) * unit_m + 0.0;
+  }
+  return origin;
 }
 
 PointCloud select(const PointCloud& cloud, const Array<std::uint8_t>& keep) {

@@ -48,16 +48,20 @@ const std::vector<MetricInfo>& metric_catalog() {
 
 const MetricInfo* find_metric(std::string_view id_or_symbol) {
   for (const MetricInfo& metric : metric_catalog()) {
-    if (metric.id == id_or_symbol) return &metric;
+    if (equal_ignoring_case(metric.id, id_or_symbol)) return &metric;
     if (!metric.symbol.empty() && equal_ignoring_case(metric.symbol, id_or_symbol)) return &metric;
   }
   return nullptr;
 }
 
+const std::vector<std::string>& default_metrics() {
+  static const std::vector<std::string> metrics{"color", "geometry", "distribution"};
+  return metrics;
+}
+
 MetricSelection select_metrics(const EvaluationOptions& options) {
-  static const std::vector<std::string> kDefault{"color", "geometry", "distribution"};
   MetricSelection selection;
-  for (const std::string& name : options.metrics.empty() ? kDefault : options.metrics) {
+  for (const std::string& name : options.metrics.empty() ? default_metrics() : options.metrics) {
     bool known = false;
     for (const MetricInfo& metric : metric_catalog()) {
       if (metric.id != name && !is_in_group(metric, name)) continue;

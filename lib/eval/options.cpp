@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "cmap/core/error.hpp"
@@ -120,7 +121,7 @@ Json crop_json(const EvaluationOptions& o) {
 double number_from_text(const OptionSpec& spec, const std::string& text) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) {
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
     throw UsageError(fmt::format("{}: \"{}\" is not a number", spec.name, text));
   }
   return value;
@@ -172,7 +173,7 @@ Json value_from_text(const OptionSpec& spec, const std::string& text) {
 const std::vector<OptionSpec>& evaluation_option_specs() {
   static const std::vector<OptionSpec> specs{
       CMAP_OPTION("metrics", kWords, "LIST", "groups (color, color+, geometry, distribution, mme, all) or metric ids",
-                  metrics, metric_names(n, value), o.metrics),
+                  metrics, metric_names(n, value), o.metrics.empty() ? default_metrics() : o.metrics),
       CMAP_OPTION("thresholds", kNumbers, "METERS,...", "of accuracy, fitness, completeness, F-score", thresholds_m,
                   thresholds(n, value), o.thresholds_m),
       CMAP_OPTION("overlap-distance", kNumber, "METERS", "of overlap, truncated Chamfer and inlier RMSE",
@@ -219,7 +220,14 @@ void set_option(EvaluationOptions& options, const OptionSpec& spec, const std::s
 
 void apply_config(EvaluationOptions& options, const std::string& json_text, const std::string& source) {
   try {
-    const Json config = Json::parse(json_text, nullptr, true, /*ignore_comments=*/true);
+    std::set<std::string> keys;
+    const auto refuse_repetition = [&](int depth, Json::parse_event_t event, Json& parsed) {
+      if (event == Json::parse_event_t::key && depth == 1 && !keys.insert(parsed.get<std::string>()).second) {
+        throw UsageError(fmt::format("key \"{}\" is given twice", parsed.get<std::string>()));
+      }
+      return true;
+    };
+    const Json config = Json::parse(json_text, refuse_repetition, true, /*ignore_comments=*/true);
     if (!config.is_object()) throw UsageError("expected a JSON object of options");
     for (const auto& [key, value] : config.items()) {
       const auto spec = std::ranges::find_if(evaluation_option_specs(), [&](const auto& s) { return key == s.name; });

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <regex>
 
@@ -57,7 +58,8 @@ Requirement parse_requirement(const std::string& text, const EvaluationOptions& 
   const auto number = [&](const std::string& digits) {
     char* end = nullptr;
     const double value = std::strtod(digits.c_str(), &end);
-    if (end != digits.c_str() + digits.size()) refuse(text, fmt::format("\"{}\" is not a number", digits));
+    if (end != digits.c_str() + digits.size() || !std::isfinite(value))
+      refuse(text, fmt::format("\"{}\" is not a number", digits));
     return value;
   };
   Requirement requirement{text,           find_metric(match[1].str()), std::nullopt, match[2].str(),
@@ -75,17 +77,18 @@ RequirementOutcome check(const Requirement& requirement, const Evaluation& evalu
   const MetricRecord* record = evaluation.find(requirement.metric->id);
   if (record == nullptr) refuse(requirement.text, "the metric was not computed");
   const auto& part = part_of(*record, requirement);
-  std::string path = requirement.field.empty() ? "/value" : requirement.field;
+  std::string path = requirement.field.empty() ? ".value" : requirement.field;
+  const std::string field = path.substr(1);
   std::ranges::replace(path, '.', '/');
   const nlohmann::ordered_json::json_pointer pointer(path);
   // A metric that has no value at all, for want of color, has no other field either.
   if (!part.contains(pointer)) {
     if (part.contains("value") && part.at("value").is_null()) return {false, std::nullopt};
-    refuse(requirement.text, fmt::format("{} has no field {}", requirement.metric->id, requirement.field));
+    refuse(requirement.text, fmt::format("{} has no field {}", requirement.metric->id, field));
   }
   const auto& value = part.at(pointer);
   if (value.is_null()) return {false, std::nullopt};
-  if (!value.is_number()) refuse(requirement.text, fmt::format("{} is not a number", requirement.field));
+  if (!value.is_number()) refuse(requirement.text, fmt::format("{} is not a number", field));
   return {compare(value.get<double>(), requirement.comparison, requirement.bound), value.get<double>()};
 }
 

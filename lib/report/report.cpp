@@ -12,10 +12,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Text for JSON: file names may be in any encoding, bytes that are no UTF-8 become U+FFFD.
+std::string utf8(const std::string& text) {
+  return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
+}
+
 Json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 Json input_json(const InputDescription& input) {
-  return {{"path", input.file.path},
+  return {{"path", utf8(input.file.path)},
           {"sha256", input.file.sha256},
           {"format", input.file.format},
           {"points", input.file.points},
@@ -60,7 +65,7 @@ std::uint64_t peak_memory_bytes() {
 Json run_json(const RunDescription& run) {
   Json stages = Json::object();
   for (const auto& [name, seconds] : run.stage_seconds) stages[name] = seconds;
-  return {{"command", run.command},
+  return {{"command", utf8(run.command)},
           {"started_utc", run.started_utc},
           {"wall_s", run.wall_s},
           {"stages", stages},
@@ -79,7 +84,7 @@ void add_input_warnings(Json& warnings, const char* which, const InputDescriptio
                          " points are not finite and were dropped"}});
   }
   for (const std::string& note : input.file.notes) {
-    warnings.push_back({{"id", "input_note"}, {"message", std::string(which) + ": " + note}});
+    warnings.push_back({{"id", "input_note"}, {"message", utf8(std::string(which) + ": " + note)}});
   }
 }
 

@@ -14,12 +14,13 @@ constexpr std::string_view kMissing = "-";
 /// Four significant digits, as readers of such tables expect; plain for ordinary sizes.
 std::string digits(const Json& value) {
   if (!value.is_number()) return std::string(kMissing);
-  const double v = value.get<double>();
+  // Rounded first: 999.96 has four digits before the point.
+  const double v = std::stod(fmt::format("{:.3e}", value.get<double>()));
   if (v == 0.0) return "0";
   const double magnitude = std::abs(v);
   if (magnitude < 1e-4 || magnitude >= 1e6) return fmt::format("{:.3e}", v);
   const int before_point = static_cast<int>(std::floor(std::log10(magnitude))) + 1;
-  return fmt::format("{:.{}f}", v, std::max(0, 4 - before_point));
+  return fmt::format("{:.{}f}", value.get<double>(), std::max(0, 4 - before_point));
 }
 
 /// A share in percent, without the sign.
@@ -93,6 +94,11 @@ std::string remark(const MetricInfo& info, const Json& metric) {
   return "";
 }
 
+/// Heading of the column of one threshold.
+std::string threshold_label(const Json& entry) {
+  return fmt::format("{:>10}", fmt::format("<= {}", meters(entry.at("threshold_m"))));
+}
+
 std::string unit_of(const MetricInfo& info) { return info.unit == "1" ? "" : std::string(info.unit); }
 
 std::string value_rows(const MetricInfo& info, const Json& metric) {
@@ -101,7 +107,8 @@ std::string value_rows(const MetricInfo& info, const Json& metric) {
   const std::string unit = share ? "%" : unit_of(info);
   if (metric.contains("per_threshold")) {
     std::string values;
-    for (const Json& entry : metric.at("per_threshold")) values += fmt::format(" {:>10}", shown(entry.at("value")));
+    for (const Json& entry : metric.at("per_threshold"))
+      values += fmt::format(" {:>{}}", shown(entry.at("value")), threshold_label(entry).size());
     return row(info.title, metric, values, unit, "");
   }
   if (metric.contains("per_range")) {
@@ -118,8 +125,7 @@ std::string value_rows(const MetricInfo& info, const Json& metric) {
 /// The thresholds above the columns of the metrics that have one value for each.
 std::string threshold_line(const Json& metric) {
   std::string line(44, ' ');  // where row() puts the value
-  for (const Json& entry : metric.at("per_threshold"))
-    line += fmt::format(" {:>10}", "<= " + meters(entry.at("threshold_m")));
+  for (const Json& entry : metric.at("per_threshold")) line += fmt::format(" {}", threshold_label(entry));
   return line + "\n";
 }
 
@@ -147,7 +153,10 @@ std::string alias_lines(const std::string& prefix, const Json& value) {
     }
     return lines;
   }
-  return fmt::format(" {} {}\n", padded(prefix, 41), value.is_string() ? value.get<std::string>() : value.dump());
+  return fmt::format(" {} {}\n", padded(prefix, 41),
+                     value.is_string() ? value.get<std::string>()
+                     : value.is_null() ? std::string(kMissing)
+                                       : value.dump());
 }
 
 }  // namespace

@@ -117,10 +117,10 @@ TEST(ChooseOrigin, IsZeroForBoxesThatContainZero) {
 }
 
 TEST(ChooseOrigin, TakesEachAxisByItself) {
-  // Twice the extents: 20 -> 100, 1200 -> 10000, 2 -> 10.
-  EXPECT_EQ(choose_origin({{500120, 4000000, 0}, {500130, 4000600, 1}}), Vector3d(500100, 4000000, 0));
-  EXPECT_EQ(choose_origin({{-7.2, 25, 1234}, {-7.1, 55, 1235}}), Vector3d(-7, 0, 1230));
-  EXPECT_EQ(choose_origin({{-7.2, 61, -1235}, {-7.1, 61, -1234}}), Vector3d(-7, 61, -1230));
+  // The extents 10, 600 and 1 have units of 100, 1000 and 100.
+  EXPECT_EQ(choose_origin({{500120, 4000200, 0}, {500130, 4000800, 1}}), Vector3d(500100, 4001000, 0));
+  EXPECT_EQ(choose_origin({{-7.2, 25, 1234}, {-7.1, 55, 1235}}), Vector3d(0, 0, 1200));
+  EXPECT_EQ(choose_origin({{-77.2, 61, -1235}, {-77.1, 61, -1234}}), Vector3d(-100, 100, -1200));
 }
 
 TEST(ChooseOrigin, KeepsOffsetsSmallAgainstTheExtent) {
@@ -132,8 +132,8 @@ TEST(ChooseOrigin, KeepsOffsetsSmallAgainstTheExtent) {
     const Vector3d center = 0.5 * (box.min + box.max);
     const Vector3d origin = choose_origin(box);
     for (int axis = 0; axis < 3; ++axis) {
-      // The unit is 1 or less than 20 extents (the next smaller power of ten was too small); half of it at most.
-      const double limit = std::max(0.5, 10.0 * (box.max[axis] - box.min[axis]));
+      // The unit is 100 or less than 10 extents (the next smaller power of ten was too small); half of it at most.
+      const double limit = std::max(50.0, 5.0 * (box.max[axis] - box.min[axis]));
       ASSERT_LE(std::abs(center[axis] - origin[axis]), limit);
     }
   }

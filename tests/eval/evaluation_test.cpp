@@ -137,7 +137,8 @@ TEST(Evaluation, MapsWithThemselvesArePerfect) {
   EXPECT_EQ(fields(found, "color_distance").at("value"), 0.0);
   EXPECT_EQ(fields(found, "local_color_recall").at("value"), 1.0);
   EXPECT_EQ(fields(found, "average_wasserstein").at("value"), 0.0);
-  for (const Json& entry : fields(found, "f_score").at("per_threshold")) EXPECT_EQ(entry.at("value"), 1.0);
+  const Json f_score = fields(found, "f_score");
+  for (const Json& entry : f_score.at("per_threshold")) EXPECT_EQ(entry.at("value"), 1.0);
   EXPECT_TRUE(fields(found, "color_fidelity").at("value").is_null());
   EXPECT_THAT(warning_ids(found.warnings), Contains("color_fidelity_infinite"));
 }

@@ -44,9 +44,9 @@ struct PointCloud {
 /// Bounds in the world frame. Throws std::invalid_argument on an empty cloud.
 Box3d bounds(const PointCloud& cloud);
 
-/// The origin that a cloud with these bounds gets: the multiple of 100 m nearest to the box's center, on every axis. So
-/// a cloud around zero keeps its floats as they are, and two clouds that differ by a shift of hundreds of meters get the
-/// same offsets, and so the same scores.
+/// The origin that a cloud with these bounds gets: on every axis the multiple of a power of ten (at least 100 m and the
+/// extent) that is nearest to the box's center. A cloud around zero keeps its floats as they are, and two clouds that
+/// differ by a shift of such round numbers get the same offsets, and so the same scores.
 Eigen::Vector3d choose_origin(const Box3d& box);
 
 /// Largest coordinate magnitude (m) accepted anywhere: squared distances must stay finite in float.

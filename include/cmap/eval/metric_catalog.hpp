@@ -27,6 +27,9 @@ const std::vector<MetricInfo>& metric_catalog();
 /// By id or symbol, whatever the case; nullptr if there is none.
 const MetricInfo* find_metric(std::string_view id_or_symbol);
 
+/// What is computed where nothing is named.
+const std::vector<std::string>& default_metrics();
+
 /// Which metrics the options ask for.
 struct MetricSelection {
   std::set<std::string_view> ids;
