@@ -5,9 +5,13 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <chrono>
+#include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <map>
+#include <set>
 
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
@@ -41,9 +45,22 @@ struct Arguments {
   std::string estimate_errors, reference_errors;
   std::vector<std::string> requirements;
   std::map<std::string, std::string> option_texts;  ///< evaluation options by name
+  std::set<std::string> given;                      ///< names of those that were given
   int threads = 0;
   bool quiet = false;
 };
+
+/// An option's default as one would type it; empty where it has none.
+std::string default_text(const cmap::OptionSpec& spec) {
+  const auto value = spec.get(cmap::EvaluationOptions{});
+  if (value.is_null() || value.empty()) return "";
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_array()) return value.dump();
+  std::string text;
+  for (const auto& item : value)
+    text += (text.empty() ? "" : ",") + (item.is_string() ? item.get<std::string>() : item.dump());
+  return text;
+}
 
 void add_evaluation_options(CLI::App& app, Arguments& arguments) {
   for (const cmap::OptionSpec& spec : cmap::evaluation_option_specs()) {
@@ -55,38 +72,42 @@ void add_evaluation_options(CLI::App& app, Arguments& arguments) {
           ->group("Metrics");
       continue;
     }
-    const auto shown_default = spec.get(cmap::EvaluationOptions{});
     std::string help = spec.help;
-    if (!shown_default.is_null() && !shown_default.empty()) {
-      help += shown_default.is_array()
-                  ? fmt::format(" [{}]", fmt::join(shown_default.get<std::vector<double>>(), ","))
-                  : fmt::format(" [{}]",
-                                shown_default.is_string() ? shown_default.get<std::string>() : shown_default.dump());
+    if (const std::string text_of_default = default_text(spec); !text_of_default.empty()) {
+      help += fmt::format(" [{}]", text_of_default);
     }
     app.add_option(flag, text, help)->type_name(spec.placeholder)->group("Metrics");
   }
 }
 
+/// An unset variable of a script must not silently mean the default.
+const CLI::Validator kNotEmpty([](std::string& text) { return text.empty() ? std::string("is empty") : ""; }, "");
+
 void add_options(CLI::App& app, Arguments& a) {
   app.add_option("REF", a.reference, "reference map")->required()->type_name("FILE");
   app.add_option("EST", a.estimate, "estimated map")->required()->type_name("FILE");
-  app.add_option("-o,--output", a.output, "write the JSON report here")->type_name("FILE");
+  app.add_option("-o,--output", a.output, "write the JSON report here")->type_name("FILE")->check(kNotEmpty);
   app.add_option("--format", a.format, "what to print: table or json [table]")
       ->type_name("FORMAT")
       ->check(CLI::IsMember({"table", "json"}));
   app.add_option("--config", a.config, "JSON file of the options under Metrics; the command line wins")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(kNotEmpty);
   app.add_option("--preset", a.preset, "shipped configuration: paper, indoor, outdoor, aerial, mapeval")
-      ->type_name("NAME");
+      ->type_name("NAME")
+      ->check(kNotEmpty);
   app.add_option("--transform", a.transform, "4x4 matrix T_ref_est that moves the estimate into the reference frame")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(kNotEmpty);
   app.add_option("--require", a.requirements, "exit 1 unless it holds: LCR>=0.2, accuracy@0.1<=0.06; repeatable")
       ->type_name("EXPR")
       ->allow_extra_args(false);
   app.add_option("--export-errors", a.estimate_errors, "PLY of the estimate with its distance and color errors")
-      ->type_name("FILE.ply");
+      ->type_name("FILE.ply")
+      ->check(kNotEmpty);
   app.add_option("--export-reference-errors", a.reference_errors, "the same for the reference, with LCR hits")
-      ->type_name("FILE.ply");
+      ->type_name("FILE.ply")
+      ->check(kNotEmpty);
   app.add_option("--threads", a.threads, "threads to use [all]")->type_name("N")->check(CLI::Range(1, 4096));
   app.add_flag("--quiet", a.quiet, "no table, no progress");
   add_evaluation_options(app, a);
@@ -97,8 +118,8 @@ cmap::EvaluationOptions resolve_options(const Arguments& arguments) {
   if (!arguments.preset.empty()) cmap::apply_preset(options, arguments.preset);
   if (!arguments.config.empty()) cmap::apply_config_file(options, arguments.config);
   for (const cmap::OptionSpec& spec : cmap::evaluation_option_specs()) {
+    if (!arguments.given.contains(spec.name)) continue;
     const std::string& text = arguments.option_texts.at(spec.name);
-    if (text.empty()) continue;
     try {
       cmap::set_option(options, spec, text);
     } catch (const cmap::UsageError& error) {
@@ -129,15 +150,18 @@ bool check_requirements(const std::vector<cmap::Requirement>& requirements, cons
   return all_hold;
 }
 
+namespace fs = std::filesystem;
+
 /// Inputs are never modified: an output must not be one of them, under whatever name, nor another output.
 void refuse_overwriting(const Arguments& a) {
   std::vector<std::string> taken{a.reference, a.estimate, a.config, a.transform};
   for (const std::string& output : {a.output, a.estimate_errors, a.reference_errors}) {
+    if (output.empty()) continue;
     for (const std::string& other : taken) {
-      if (output.empty() || other.empty()) continue;
       std::error_code missing;
-      if (output == other ||
-          (std::filesystem::is_regular_file(output, missing) && std::filesystem::equivalent(output, other, missing))) {
+      const bool is_device = fs::exists(output, missing) && !fs::is_regular_file(output, missing);
+      if (other.empty() || is_device) continue;
+      if (fs::weakly_canonical(output) == fs::weakly_canonical(other) || fs::equivalent(output, other, missing)) {
         throw cmap::UsageError(fmt::format("{}: would overwrite {}", output, other));
       }
     }
@@ -145,29 +169,64 @@ void refuse_overwriting(const Arguments& a) {
   }
 }
 
-void write_outputs(const Arguments& arguments, const cmap::Evaluation& evaluation, const std::string& report_text) {
-  std::vector<std::string> written;
-  try {
-    if (!arguments.estimate_errors.empty()) {
-      cmap::write_estimate_errors(evaluation, arguments.estimate_errors);
-      written.push_back(arguments.estimate_errors);
+void print(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+    throw cmap::UsageError(fmt::format("standard output: {}", std::strerror(errno)));
+  }
+}
+
+/// Files that wait beside their places until every output is complete.
+class StagedFiles {
+ public:
+  StagedFiles() = default;
+  StagedFiles(const StagedFiles&) = delete;
+  StagedFiles& operator=(const StagedFiles&) = delete;
+  ~StagedFiles() {
+    std::error_code ignored;
+    for (const auto& [staged, place] : files_) fs::remove(staged, ignored);
+  }
+
+  /// Writes what is to appear at `place`, if that is asked for; devices and pipes are written at once.
+  template <class Write>
+  void write(const std::string& place, Write&& write_to) {
+    std::error_code missing;
+    if (place.empty()) return;
+    if (fs::exists(place, missing) && !fs::is_regular_file(place, missing)) return write_to(place);
+    const std::string waiting = place + ".part";
+    files_.emplace_back(waiting, place);
+    try {
+      write_to(waiting);
+    } catch (const cmap::UsageError& error) {
+      std::string message = error.what();  // users know the place, not where it waits
+      if (const auto at = message.find(waiting); at != std::string::npos) message.replace(at, waiting.size(), place);
+      throw cmap::UsageError(message);
     }
-    if (!arguments.reference_errors.empty()) {
-      cmap::write_reference_errors(evaluation, arguments.reference_errors);
-      written.push_back(arguments.reference_errors);
-    }
-    if (arguments.output.empty()) return;
-    cmap::OutputFile file(arguments.output);
+  }
+
+  void commit() {
+    for (const auto& [staged, place] : files_) fs::rename(staged, place);
+    files_.clear();
+  }
+
+ private:
+  std::vector<std::pair<std::string, std::string>> files_;
+};
+
+/// Prints and writes everything: all outputs or none, and none before the last one is complete.
+void deliver(const Arguments& arguments, const cmap::Evaluation& evaluation, const std::string& report_text,
+             const std::string& printed) {
+  StagedFiles staged;
+  staged.write(arguments.estimate_errors,
+               [&](const std::string& path) { cmap::write_estimate_errors(evaluation, path); });
+  staged.write(arguments.reference_errors,
+               [&](const std::string& path) { cmap::write_reference_errors(evaluation, path); });
+  staged.write(arguments.output, [&](const std::string& path) {
+    cmap::OutputFile file(path);
     file.write(report_text);
     file.commit();
-  } catch (...) {
-    // All outputs or none.
-    std::error_code ignored;
-    for (const std::string& path : written) {
-      if (std::filesystem::is_regular_file(path, ignored)) std::filesystem::remove(path, ignored);
-    }
-    throw;
-  }
+  });
+  if (!arguments.quiet) print(printed);
+  staged.commit();
 }
 
 ExitCode run(const Arguments& arguments, const std::string& command) {
@@ -203,8 +262,7 @@ ExitCode run(const Arguments& arguments, const std::string& command) {
   const auto report = cmap::make_report(reference_description, estimate_description, evaluation, run);
   const std::string report_text = report.dump(2) + "\n";
   const bool requirements_hold = check_requirements(requirements, evaluation);
-  write_outputs(arguments, evaluation, report_text);
-  if (!arguments.quiet) fmt::print("{}", arguments.format == "json" ? report_text : cmap::format_table(report));
+  deliver(arguments, evaluation, report_text, arguments.format == "json" ? report_text : cmap::format_table(report));
   return requirements_hold ? ExitCode::kDone : ExitCode::kRequirementFailed;
 }
 
@@ -218,6 +276,9 @@ int main(int argc, char** argv) {
   try {
     add_options(app, arguments);
     app.parse(argc, argv);
+    for (auto& [name, text] : arguments.option_texts) {
+      if (app.count("--" + name) > 0) arguments.given.insert(name);
+    }
     const std::vector<std::string> command(argv, argv + argc);
     return static_cast<int>(run(arguments, fmt::format("{}", fmt::join(command, " "))));
   } catch (const CLI::ParseError& error) {

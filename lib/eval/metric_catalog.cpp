@@ -16,6 +16,8 @@ bool equal_ignoring_case(std::string_view a, std::string_view b) {
 }
 
 bool is_in_group(const MetricInfo& metric, std::string_view group) {
+  if (group == "default")
+    return metric.group == "color" || metric.group == "geometry" || metric.group == "distribution";
   return group == "all" || metric.group == group || (group == "color+" && metric.group == "color");
 }
 
@@ -54,27 +56,24 @@ const MetricInfo* find_metric(std::string_view id_or_symbol) {
   return nullptr;
 }
 
-const std::vector<std::string>& default_metrics() {
-  static const std::vector<std::string> metrics{"color", "geometry", "distribution"};
-  return metrics;
-}
-
 MetricSelection select_metrics(const EvaluationOptions& options) {
+  static const std::vector<std::string> kDefault{"default"};
   MetricSelection selection;
-  for (const std::string& name : options.metrics.empty() ? default_metrics() : options.metrics) {
+  for (const std::string& name : options.metrics.empty() ? kDefault : options.metrics) {
     bool known = false;
     for (const MetricInfo& metric : metric_catalog()) {
       if (metric.id != name && !is_in_group(metric, name)) continue;
       known = true;
       selection.ids.insert(metric.id);
-      if (metric.needs_color && name != "all" && !options.metrics.empty()) selection.color_is_required = true;
+      if (metric.needs_color && name != "all" && name != "default") selection.color_is_required = true;
     }
     if (!known) {
       std::vector<std::string_view> ids;
       for (const MetricInfo& metric : metric_catalog()) ids.push_back(metric.id);
-      throw UsageError(fmt::format(
-          "metrics: \"{}\" is unknown; groups are color, color+, geometry, distribution, mme, all; metrics are {}",
-          name, fmt::join(ids, ", ")));
+      throw UsageError(
+          fmt::format("metrics: \"{}\" is unknown; groups are default, color, color+, geometry, distribution, mme, "
+                      "all; metrics are {}",
+                      name, fmt::join(ids, ", ")));
     }
   }
   return selection;

@@ -173,7 +173,7 @@ Json value_from_text(const OptionSpec& spec, const std::string& text) {
 const std::vector<OptionSpec>& evaluation_option_specs() {
   static const std::vector<OptionSpec> specs{
       CMAP_OPTION("metrics", kWords, "LIST", "groups (color, color+, geometry, distribution, mme, all) or metric ids",
-                  metrics, metric_names(n, value), o.metrics.empty() ? default_metrics() : o.metrics),
+                  metrics, metric_names(n, value), o.metrics.empty() ? std::vector<std::string>{"default"} : o.metrics),
       CMAP_OPTION("thresholds", kNumbers, "METERS,...", "of accuracy, fitness, completeness, F-score", thresholds_m,
                   thresholds(n, value), o.thresholds_m),
       CMAP_OPTION("overlap-distance", kNumber, "METERS", "of overlap, truncated Chamfer and inlier RMSE",

@@ -27,9 +27,6 @@ const std::vector<MetricInfo>& metric_catalog();
 /// By id or symbol, whatever the case; nullptr if there is none.
 const MetricInfo* find_metric(std::string_view id_or_symbol);
 
-/// What is computed where nothing is named.
-const std::vector<std::string>& default_metrics();
-
 /// Which metrics the options ask for.
 struct MetricSelection {
   std::set<std::string_view> ids;
@@ -37,7 +34,8 @@ struct MetricSelection {
   bool contains(std::string_view id) const { return ids.contains(id); }
 };
 
-/// Groups: color, color+ (color and what goes beyond the paper), geometry, distribution, mme, all.
+/// Groups: color, color+ (color and what goes beyond the paper), geometry, distribution, mme, all, and default, which
+/// is color, geometry and distribution as far as the maps allow.
 /// Throws UsageError for an unknown name.
 MetricSelection select_metrics(const EvaluationOptions& options);
 
