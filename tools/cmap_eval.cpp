@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <list>
 #include <map>
 #include <set>
 
@@ -175,58 +176,20 @@ void print(const std::string& text) {
   }
 }
 
-/// Files that wait beside their places until every output is complete.
-class StagedFiles {
- public:
-  StagedFiles() = default;
-  StagedFiles(const StagedFiles&) = delete;
-  StagedFiles& operator=(const StagedFiles&) = delete;
-  ~StagedFiles() {
-    std::error_code ignored;
-    for (const auto& [staged, place] : files_) fs::remove(staged, ignored);
-  }
-
-  /// Writes what is to appear at `place`, if that is asked for; devices and pipes are written at once.
-  template <class Write>
-  void write(const std::string& place, Write&& write_to) {
-    std::error_code missing;
-    if (place.empty()) return;
-    if (fs::exists(place, missing) && !fs::is_regular_file(place, missing)) return write_to(place);
-    const std::string waiting = place + ".part";
-    files_.emplace_back(waiting, place);
-    try {
-      write_to(waiting);
-    } catch (const cmap::UsageError& error) {
-      std::string message = error.what();  // users know the place, not where it waits
-      if (const auto at = message.find(waiting); at != std::string::npos) message.replace(at, waiting.size(), place);
-      throw cmap::UsageError(message);
-    }
-  }
-
-  void commit() {
-    for (const auto& [staged, place] : files_) fs::rename(staged, place);
-    files_.clear();
-  }
-
- private:
-  std::vector<std::pair<std::string, std::string>> files_;
-};
-
 /// Prints and writes everything: all outputs or none, and none before the last one is complete.
 void deliver(const Arguments& arguments, const cmap::Evaluation& evaluation, const std::string& report_text,
              const std::string& printed) {
-  StagedFiles staged;
-  staged.write(arguments.estimate_errors,
-               [&](const std::string& path) { cmap::write_estimate_errors(evaluation, path); });
-  staged.write(arguments.reference_errors,
-               [&](const std::string& path) { cmap::write_reference_errors(evaluation, path); });
-  staged.write(arguments.output, [&](const std::string& path) {
-    cmap::OutputFile file(path);
-    file.write(report_text);
-    file.commit();
-  });
+  std::list<cmap::OutputFile> files;
+  const auto write = [&](const std::string& path, auto&& write_to) {
+    if (path.empty()) return;
+    write_to(files.emplace_back(path));
+    files.back().finish();
+  };
+  write(arguments.estimate_errors, [&](cmap::OutputFile& file) { cmap::write_estimate_errors(evaluation, file); });
+  write(arguments.reference_errors, [&](cmap::OutputFile& file) { cmap::write_reference_errors(evaluation, file); });
+  write(arguments.output, [&](cmap::OutputFile& file) { file.write(report_text); });
   if (!arguments.quiet) print(printed);
-  staged.commit();
+  for (cmap::OutputFile& file : files) file.commit();
 }
 
 ExitCode run(const Arguments& arguments, const std::string& command) {

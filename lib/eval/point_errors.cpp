@@ -38,7 +38,7 @@ Array<float> field(const PointBlocks& points, ValueAt&& value_at) {
 }
 
 void write_errors(const Evaluation& evaluation, const NearestPairs& pairs, const LocalColorRecall* recall,
-                  const std::filesystem::path& path) {
+                  OutputFile& file) {
   const PointBlocks& points = pairs.from.index.points;
   const Array<float> distances = field(points, [&](std::size_t slot) { return pairs.distance_m(slot); });
   std::vector<PointField> fields{{"scalar_distance_m", distances}};
@@ -52,18 +52,30 @@ void write_errors(const Evaluation& evaluation, const NearestPairs& pairs, const
     recall_classes = field(points, [&](std::size_t slot) { return static_cast<int>(recall->classes[slot]); });
     fields.push_back({"scalar_lcr", recall_classes});
   }
-  write_ply(path, point_cloud(pairs.from), fields);
+  write_ply(file, point_cloud(pairs.from), fields);
 }
 
 }  // namespace
 
+void write_estimate_errors(const Evaluation& evaluation, OutputFile& file) {
+  write_errors(evaluation, evaluation.pair.estimate_to_reference(), nullptr, file);
+}
+
+void write_reference_errors(const Evaluation& evaluation, OutputFile& file) {
+  write_errors(evaluation, evaluation.pair.reference_to_estimate(), evaluation.recall ? &*evaluation.recall : nullptr,
+               file);
+}
+
 void write_estimate_errors(const Evaluation& evaluation, const std::filesystem::path& path) {
-  write_errors(evaluation, evaluation.pair.estimate_to_reference(), nullptr, path);
+  OutputFile file(path);
+  write_estimate_errors(evaluation, file);
+  file.commit();
 }
 
 void write_reference_errors(const Evaluation& evaluation, const std::filesystem::path& path) {
-  write_errors(evaluation, evaluation.pair.reference_to_estimate(), evaluation.recall ? &*evaluation.recall : nullptr,
-               path);
+  OutputFile file(path);
+  write_reference_errors(evaluation, file);
+  file.commit();
 }
 
 }  // namespace cmap

@@ -82,11 +82,15 @@ void OutputFile::write(const void* data, std::size_t bytes) {
   if (std::fwrite(data, 1, bytes, file_) != bytes) fail(path_, errno);
 }
 
-void OutputFile::commit() {
+void OutputFile::finish() {
   if (std::fflush(file_) != 0) fail(path_, errno);
   std::FILE* file = file_;
   file_ = nullptr;
   if (std::fclose(file) != 0) fail(path_, errno);
+}
+
+void OutputFile::commit() {
+  if (file_ != nullptr) finish();
   if (temporary_.empty()) return;
   if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail(path_, errno);
   temporary_.clear();

@@ -82,11 +82,9 @@ class PlyRows {
 
 }  // namespace
 
-void write_ply(const std::filesystem::path& path, const PointCloud& cloud, std::span<const PointField> fields,
-               PlyEncoding encoding) {
+void write_ply(OutputFile& file, const PointCloud& cloud, std::span<const PointField> fields, PlyEncoding encoding) {
   check_fields(cloud, fields);
   const bool wide = cloud.origin != Eigen::Vector3d::Zero();
-  OutputFile file(path);
   file.write(header(cloud, fields, encoding, wide));
   RowWriter writer(file);
   std::visit(
@@ -99,6 +97,12 @@ void write_ply(const std::filesystem::path& path, const PointCloud& cloud, std::
       },
       cloud.colors);
   writer.flush();
+}
+
+void write_ply(const std::filesystem::path& path, const PointCloud& cloud, std::span<const PointField> fields,
+               PlyEncoding encoding) {
+  OutputFile file(path);
+  write_ply(file, cloud, fields, encoding);
   file.commit();
 }
 

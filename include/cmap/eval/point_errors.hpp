@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "cmap/eval/evaluation.hpp"
+#include "cmap/io/output_file.hpp"
 
 namespace cmap {
 
@@ -14,5 +15,9 @@ void write_estimate_errors(const Evaluation& evaluation, const std::filesystem::
 /// The same for the reference, with scalar_lcr where local color recall was computed: 0 not covered, 1 covered but of
 /// the wrong color, 2 recalled.
 void write_reference_errors(const Evaluation& evaluation, const std::filesystem::path& path);
+
+/// The same into files that the caller commits.
+void write_estimate_errors(const Evaluation& evaluation, OutputFile& file);
+void write_reference_errors(const Evaluation& evaluation, OutputFile& file);
 
 }  // namespace cmap

@@ -19,7 +19,10 @@ class OutputFile {
 
   void write(const void* data, std::size_t bytes);
   void write(std::string_view text) { write(text.data(), text.size()); }
-  /// Flushes to the system, checks for errors, and renames. Not called: nothing is left behind.
+  /// Flushes to the system and closes, still under the temporary name: what can go wrong has, before several files
+  /// that belong together appear. Nothing can be written afterwards.
+  void finish();
+  /// Finishes, unless done, and renames. Not called: nothing is left behind.
   void commit();
 
  private:

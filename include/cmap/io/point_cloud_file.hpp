@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cmap/core/point_cloud.hpp"
+#include "cmap/io/output_file.hpp"
 
 namespace cmap {
 
@@ -51,6 +52,10 @@ enum class PcdEncoding { kAscii, kBinary, kBinaryCompressed };
 /// fields. The file appears under its name only when complete. Throws UsageError if it cannot be written,
 /// std::invalid_argument if a field's length is not the cloud's.
 void write_ply(const std::filesystem::path& path, const PointCloud& cloud, std::span<const PointField> fields = {},
+               PlyEncoding encoding = PlyEncoding::kBinaryLittleEndian);
+
+/// The same into a file that the caller commits.
+void write_ply(OutputFile& file, const PointCloud& cloud, std::span<const PointField> fields = {},
                PlyEncoding encoding = PlyEncoding::kBinaryLittleEndian);
 
 /// The same as PCD v0.7; colors become packed 8-bit `rgb` (float32 bits), as PCL writes them.
