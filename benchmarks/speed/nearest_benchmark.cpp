@@ -9,7 +9,7 @@
 #include "town_pair.hpp"
 
 #ifdef CMAP_WITH_NANOFLANN
-#include <nanoflann.hpp>
+#include "nanoflann_index.hpp"
 #endif
 #ifdef CMAP_WITH_PCL
 #include <pcl/kdtree/kdtree_flann.h>
@@ -36,29 +36,13 @@ double cmap_both_ways(const cmap::benchmarks::TownPair& town) {
 }
 
 #ifdef CMAP_WITH_NANOFLANN
-struct NanoflannView {
-  const PointCloud& cloud;
-  std::size_t kdtree_get_point_count() const { return cloud.size(); }
-  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    return cloud.positions[i][static_cast<Eigen::Index>(axis)];
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-
 double nanoflann_sum(const PointCloud& data, const PointCloud& queries) {
-  using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, NanoflannView>, NanoflannView, 3,
-                                                   std::uint32_t>;
-  const NanoflannView view{data};
-  Tree tree(3, view, nanoflann::KDTreeSingleIndexAdaptorParams(16));
-  tree.buildIndex();
+  const cmap::benchmarks::NanoflannIndex index(data);
   double sum = 0.0;
   for (const auto& q : queries.positions) {
-    std::uint32_t index = 0;
+    std::uint32_t nearest = 0;
     float sq_dist = 0.0f;
-    tree.knnSearch(q.data(), 1, &index, &sq_dist);
+    index.tree.knnSearch(q.data(), 1, &nearest, &sq_dist);
     sum += std::sqrt(static_cast<double>(sq_dist));
   }
   return sum;
@@ -140,7 +124,7 @@ void nearest_peer(benchmark::State& state, SumOfDistances sum_of_distances) {
 }
 
 void sizes(benchmark::internal::Benchmark* b) {
-  b->ArgNames({"points", "shuffled"})->Unit(benchmark::kSecond)->MeasureProcessCPUTime();
+  b->ArgNames({"points", "shuffled"})->Unit(benchmark::kSecond)->MeasureProcessCPUTime()->MinWarmUpTime(0.001);
   for (long shuffled : {0, 1}) {
     for (long points : {1'000'000, 10'000'000}) b->Args({points, shuffled});
   }

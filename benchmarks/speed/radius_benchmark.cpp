@@ -11,7 +11,7 @@
 #include "town_pair.hpp"
 
 #ifdef CMAP_WITH_NANOFLANN
-#include <nanoflann.hpp>
+#include "nanoflann_index.hpp"
 #endif
 
 namespace {
@@ -44,19 +44,6 @@ void entropy_cmap(benchmark::State& state) {
 
 #ifdef CMAP_WITH_NANOFLANN
 
-struct View {
-  const PointCloud& cloud;
-  std::size_t kdtree_get_point_count() const { return cloud.size(); }
-  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    return cloud.positions[i][static_cast<Eigen::Index>(axis)];
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, View>, View, 3, std::uint32_t>;
-
 /// A result set that stops the search at the first neighbor of the right color.
 class FirstRightColor {
  public:
@@ -83,15 +70,13 @@ class FirstRightColor {
 
 void recall_nanoflann_early_exit(benchmark::State& state) {
   const auto& town = cmap::benchmarks::town(state.range(0), false);
-  const View view{town.estimate};
-  Tree tree(3, view, nanoflann::KDTreeSingleIndexAdaptorParams(16));
-  tree.buildIndex();
+  const cmap::benchmarks::NanoflannIndex index(town.estimate);
   std::uint64_t n_recalled = 0;
   for (auto _ : state) {
     n_recalled = 0;
     for (std::size_t j = 0; j < town.reference.size(); ++j) {
       FirstRightColor result(town.estimate, cmap::rgb_255(town.reference.colors, j));
-      tree.findNeighbors(result, town.reference.positions[j].data(), nanoflann::SearchParams());
+      index.tree.findNeighbors(result, town.reference.positions[j].data(), nanoflann::SearchParams());
       n_recalled += result.found() ? 1 : 0;
     }
   }
@@ -100,16 +85,14 @@ void recall_nanoflann_early_exit(benchmark::State& state) {
 
 void entropy_nanoflann(benchmark::State& state) {
   const auto& cloud = cmap::benchmarks::town(state.range(0), false).estimate;
-  const View view{cloud};
-  Tree tree(3, view, nanoflann::KDTreeSingleIndexAdaptorParams(16));
-  tree.buildIndex();
+  const cmap::benchmarks::NanoflannIndex index(cloud);
   std::uint64_t n_valid = 0;
   for (auto _ : state) {
     n_valid = 0;
     std::vector<std::pair<std::uint32_t, float>> found;
     for (const auto& q : cloud.positions) {
-      tree.radiusSearch(q.data(), static_cast<float>(kEntropyRadius_m * kEntropyRadius_m), found,
-                        nanoflann::SearchParams(32, 0, false));
+      index.tree.radiusSearch(q.data(), static_cast<float>(kEntropyRadius_m * kEntropyRadius_m), found,
+                              nanoflann::SearchParams(32, 0, false));
       if (found.size() < 11) continue;
       Eigen::Vector3d sum = Eigen::Vector3d::Zero();
       Eigen::Matrix3d sum_sq = Eigen::Matrix3d::Zero();

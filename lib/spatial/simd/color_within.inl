@@ -42,8 +42,6 @@ class ColorGroup {
     return less_equal(sq_dist, broadcast(sq_radius_perhaps_)) & less(color_dist, broadcast(bound_ * kColorReach));
   }
 
-  bool still(float) const { return bound_ > -kInfinity; }
-
   bool matters(int level, std::uint32_t node, int c) const {
     const Mask16 near =
         less_equal(sq_dist_to_child(tree_.boxes[level][node], c, q_), broadcast(sq_radius_perhaps_)) & active_;

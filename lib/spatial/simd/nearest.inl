@@ -33,7 +33,8 @@ class NearestGroup {
     store(z_, q_.z);
   }
 
-  /// Scans blocks that probably hold the answer, so that the walk starts with a tight bound.
+  /// Scans blocks that probably hold the answer, so that the walk starts with a tight bound. At least one: an absent
+  /// child of a node is at infinity, which no finite bound reaches.
   void start_from(const std::uint32_t* guesses, int n) {
     for (int i = 0; i < n; ++i) {
       scanned_[i] = guesses[i];
@@ -44,18 +45,15 @@ class NearestGroup {
   void search() { walk(tree_, box_, *this); }
 
   Mask16 children(int level, std::uint32_t node, const Float16& sq_dist) {
-    bound_ = highest(best_);
-    std::uint32_t enter = bits(less_equal(sq_dist, broadcast(bound_ * kReach)));
+    const float bound = highest(best_);
+    std::uint32_t enter = bits(less_equal(sq_dist, broadcast(bound * kReach)));
     if (known_ == 0) return mask_from_bits(enter);
-    for (std::uint32_t tied = enter & ~bits(less(sq_dist, broadcast(bound_))); tied != 0; tied &= tied - 1) {
+    for (std::uint32_t tied = enter & ~bits(less(sq_dist, broadcast(bound))); tied != 0; tied &= tied - 1) {
       const int c = first_bit(tied);
       if (!can_settle(level, node, c, kAllLanes)) enter &= ~(1u << c);
     }
     return mask_from_bits(enter);
   }
-
-  /// By the bound when the last node was entered, which is never too low.
-  bool still(float sq_dist) const { return sq_dist <= bound_ * kReach; }
 
   bool matters(int level, std::uint32_t node, int c) const {
     const Float16 sq_dist = sq_dist_to_child(tree_.boxes[level][node], c, q_);
@@ -70,12 +68,15 @@ class NearestGroup {
     if (!is_scanned) compare_with(block);
   }
 
-  /// The nearest point of every lane.
-  void finish(Candidate* nearest) const {
+  /// Where the nearest point of every lane is.
+  void finish(std::uint32_t* slots) const {
     alignas(64) float best[16];
+    alignas(64) float blocks[16];
     store(best, best_);
+    store(blocks, block_);
     for (int lane = 0; lane < 16; ++lane) {
-      nearest[lane] = is_known(lane) ? exact_[lane] : exact_in_block(lane, block_of(lane), best[lane]);
+      const auto block = __builtin_bit_cast(std::uint32_t, blocks[lane]);
+      slots[lane] = is_known(lane) ? exact_[lane].slot : slot_in_block(lane, block, best[lane]);
     }
   }
 
@@ -136,13 +137,17 @@ class NearestGroup {
     return false;
   }
 
-  /// The lane's nearest point of a block in double, among those within reach of the float distance `best`.
+  /// Points of a block within reach of the lane's float squared distance `best`, a bit each.
+  std::uint32_t within_reach(int lane, const PointBlock& p, float best) const {
+    const Float16 sq_dist = sq_dist_to({load(p.x), load(p.y), load(p.z)}, x_[lane], y_[lane], z_[lane]);
+    return bits(less_equal(sq_dist, broadcast(best * kReach)));
+  }
+
+  /// The lane's nearest point of a block in double, among those within reach of `best`.
   Candidate exact_in_block(int lane, std::uint32_t block, float best) const {
     const PointBlock& p = tree_.blocks[block];
-    const Float16 sq_dist = sq_dist_to({load(p.x), load(p.y), load(p.z)}, x_[lane], y_[lane], z_[lane]);
-    std::uint32_t within = bits(less_equal(sq_dist, broadcast(best * kReach)));
     Candidate nearest{static_cast<double>(kInfinity), ~0u, 0};
-    for (; within != 0; within &= within - 1) {
+    for (std::uint32_t within = within_reach(lane, p, best); within != 0; within &= within - 1) {
       const auto k = static_cast<std::uint32_t>(first_bit(within));
       const double dx = static_cast<double>(x_[lane]) - static_cast<double>(p.x[k]);
       const double dy = static_cast<double>(y_[lane]) - static_cast<double>(p.y[k]);
@@ -154,11 +159,17 @@ class NearestGroup {
     return nearest;
   }
 
+  /// The same, where mostly a single point is within reach.
+  std::uint32_t slot_in_block(int lane, std::uint32_t block, float best) const {
+    const std::uint32_t within = within_reach(lane, tree_.blocks[block], best);
+    if ((within & (within - 1)) != 0) return exact_in_block(lane, block, best).slot;
+    return block * static_cast<std::uint32_t>(kBlockSize) + static_cast<std::uint32_t>(first_bit(within));
+  }
+
   const Tree& tree_;
   const Lanes3 q_;
   const LaneBox box_;
   Float16 best_ = broadcast(kInfinity);
-  float bound_ = __FLT_MAX__ / 2;  // an absent child is at infinity, never within the bound
   Float16 block_ = broadcast(0.0f);
   std::uint32_t known_ = 0;  ///< lanes whose nearest point is in exact_
   alignas(64) float x_[16], y_[16], z_[16];
@@ -195,10 +206,10 @@ inline void write_results(const Tree& tree, const Queries& queries, const Neares
   const PointBlock& q = queries.points.blocks.data()[block];
   const double* shift = queries.shift.data();
   const std::size_t n = queries.points.size - block * kBlockSize;
-  Candidate nearest[16];
+  std::uint32_t nearest[16];
   group.finish(nearest);
   for (std::size_t lane = 0; lane < kBlockSize && lane < n; ++lane) {
-    const std::uint32_t slot = nearest[lane].slot;
+    const std::uint32_t slot = nearest[lane];
     const PointBlock& p = tree.blocks[slot / kBlockSize];
     const std::size_t k = slot % kBlockSize;
     const double dx = (static_cast<double>(q.x[lane]) - static_cast<double>(p.x[k])) + shift[0];

@@ -75,7 +75,6 @@ class NeighborhoodGroup {
   Mask16 children(int, std::uint32_t, const Float16& sq_dist) const {
     return less_equal(sq_dist, broadcast(sq_reach_));
   }
-  bool still(float) const { return true; }
   bool matters(int level, std::uint32_t node, int c) const {
     return bits(less_equal(sq_dist_to_child(tree_.boxes[level][node], c, q_), broadcast(sq_reach_))) != 0;
   }

@@ -91,41 +91,37 @@ inline LaneBox box_of(const Lanes3& q, Mask16 active) {
 
 inline int first_bit(std::uint32_t bits_set) { return __builtin_ctz(bits_set); }
 
-/// Walks down to the blocks that may matter. `reach` has
+/// Walks down to the blocks that may matter, in the order of the curve. `reach` has
 ///   Mask16 children(level, node, sq_dist)   which children may matter, by their distances to the group's box,
-///   bool still(sq_dist)                     whether a child at this distance still may, after what was found since,
 ///   bool matters(level, node, c)            whether child c of the node matters to any single lane,
 ///   void scan(block)                        what to do with a block that does.
 template <class Reach>
 inline void walk(const Tree& tree, const LaneBox& box, Reach& reach) {
-  struct Pending {
-    float sq_dist;
+  struct Open {
     std::uint32_t node;
-    int level;
+    std::uint32_t left;  ///< children not yet visited
   };
-  Pending stack[8 * kBlockSize];
-  int n_pending = 0;
-  stack[n_pending++] = {0.0f, 0, tree.n_levels - 1};
-  alignas(64) float sq_dist[kBlockSize];
-  while (n_pending > 0) {
-    const Pending top = stack[--n_pending];
-    if (!reach.still(top.sq_dist)) continue;
-    if (top.level + 1 < tree.n_levels &&
-        !reach.matters(top.level + 1, top.node / kBlockSize, static_cast<int>(top.node % kBlockSize))) {
+  Open open[8];
+  int level = tree.n_levels - 1;
+  const auto enter = [&](std::uint32_t node) {
+    open[level] = {node, bits(reach.children(level, node, sq_dist_to_children(tree.boxes[level][node], box)))};
+  };
+  enter(0);
+  while (level < tree.n_levels) {
+    Open& top = open[level];
+    if (top.left == 0) {
+      ++level;
       continue;
     }
-    const Float16 distances = sq_dist_to_children(tree.boxes[top.level][top.node], box);
-    std::uint32_t enter = bits(reach.children(top.level, top.node, distances));
-    if (enter == 0) continue;
-    store(sq_dist, distances);
-    for (; enter != 0; enter &= enter - 1) {
-      const int c = first_bit(enter);
-      const std::uint32_t child = top.node * static_cast<std::uint32_t>(kBlockSize) + static_cast<std::uint32_t>(c);
-      if (top.level > 0) {
-        stack[n_pending++] = {sq_dist[c], child, top.level - 1};
-      } else if (reach.matters(0, top.node, c)) {
-        reach.scan(child);
-      }
+    const int c = first_bit(top.left);
+    top.left &= top.left - 1;
+    if (!reach.matters(level, top.node, c)) continue;
+    const std::uint32_t child = top.node * static_cast<std::uint32_t>(kBlockSize) + static_cast<std::uint32_t>(c);
+    if (level == 0) {
+      reach.scan(child);
+    } else {
+      --level;
+      enter(child);
     }
   }
 }
