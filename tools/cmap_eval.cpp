@@ -2,7 +2,6 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
@@ -81,36 +80,37 @@ void add_evaluation_options(CLI::App& app, Arguments& arguments) {
   }
 }
 
-/// An unset variable of a script must not silently mean the default.
-const CLI::Validator kNotEmpty([](std::string& text) { return text.empty() ? std::string("is empty") : ""; }, "");
-
 void add_options(CLI::App& app, Arguments& a) {
   app.add_option("REF", a.reference, "reference map")->required()->type_name("FILE");
   app.add_option("EST", a.estimate, "estimated map")->required()->type_name("FILE");
-  app.add_option("-o,--output", a.output, "write the JSON report here")->type_name("FILE")->check(kNotEmpty);
+  app.add_option("-o,--output", a.output, "write the JSON report here")->type_name("FILE");
   app.add_option("--format", a.format, "what to print: table or json [table]")
       ->type_name("FORMAT")
-      ->check(CLI::IsMember({"table", "json"}));
+      ->check(CLI::IsMember({"table", "json"}).description(""));
   app.add_option("--config", a.config, "JSON file of the options under Metrics; the command line wins")
-      ->type_name("FILE")
-      ->check(kNotEmpty);
+      ->type_name("FILE");
   app.add_option("--preset", a.preset, "shipped configuration: paper, indoor, outdoor, aerial, mapeval")
-      ->type_name("NAME")
-      ->check(kNotEmpty);
+      ->type_name("NAME");
   app.add_option("--transform", a.transform, "4x4 matrix T_ref_est that moves the estimate into the reference frame")
-      ->type_name("FILE")
-      ->check(kNotEmpty);
+      ->type_name("FILE");
   app.add_option("--require", a.requirements, "exit 1 unless it holds: LCR>=0.2, accuracy@0.1<=0.06; repeatable")
       ->type_name("EXPR")
-      ->allow_extra_args(false);
+      ->expected(1)
+      ->take_all();
   app.add_option("--export-errors", a.estimate_errors, "PLY of the estimate with its distance and color errors")
-      ->type_name("FILE.ply")
-      ->check(kNotEmpty);
+      ->type_name("FILE.ply");
   app.add_option("--export-reference-errors", a.reference_errors, "the same for the reference, with LCR hits")
-      ->type_name("FILE.ply")
-      ->check(kNotEmpty);
-  app.add_option("--threads", a.threads, "threads to use [all]")->type_name("N")->check(CLI::Range(1, 4096));
+      ->type_name("FILE.ply");
+  app.add_option("--threads", a.threads, "threads to use [all]")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4096).description(""));
   app.add_flag("--quiet", a.quiet, "no table, no progress");
+  // An unset variable of a script must not silently mean the default.
+  const CLI::Validator not_empty([](std::string& text) { return text.empty() ? std::string("is empty") : ""; }, "");
+  for (const char* name :
+       {"--output", "--config", "--preset", "--transform", "--export-errors", "--export-reference-errors"}) {
+    app.get_option(name)->check(not_empty);
+  }
   add_evaluation_options(app, a);
 }
 
@@ -153,6 +153,19 @@ bool check_requirements(const std::vector<cmap::Requirement>& requirements, cons
 
 namespace fs = std::filesystem;
 
+/// Outputs that cannot be written, or not in their format, are refused before the work.
+void check_outputs(const Arguments& a) {
+  for (const std::string& output : {a.output, a.estimate_errors, a.reference_errors}) {
+    if (!output.empty()) cmap::require_writable(output);
+  }
+  for (const std::string& ply : {a.estimate_errors, a.reference_errors}) {
+    const std::string extension = fs::path(ply).extension().string();
+    if (!extension.empty() && extension != ".ply" && extension != ".PLY") {
+      throw cmap::UsageError(fmt::format("{}: point errors are written as PLY; give it a name that ends in .ply", ply));
+    }
+  }
+}
+
 /// Inputs are never modified: an output must not be one of them, under whatever name, nor another output.
 void refuse_overwriting(const Arguments& a) {
   std::vector<std::string> taken{a.reference, a.estimate, a.config, a.transform};
@@ -192,6 +205,20 @@ void deliver(const Arguments& arguments, const cmap::Evaluation& evaluation, con
   for (cmap::OutputFile& file : files) file.commit();
 }
 
+/// The command line as one would type it into a shell.
+std::string as_typed(const char* const* argv, int argc) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%#";
+  std::string command;
+  for (std::string word : std::vector<std::string>(argv, argv + argc)) {
+    if (word.empty() || word.find_first_not_of(kPlain) != word.npos) {
+      for (std::size_t at = 0; (at = word.find('\'', at)) != word.npos; at += 4) word.replace(at, 1, "'\\''");
+      word = fmt::format("'{}'", word);
+    }
+    command += fmt::format("{}{}", command.empty() ? "" : " ", word);
+  }
+  return command;
+}
+
 ExitCode run(const Arguments& arguments, const std::string& command) {
   const auto start = std::chrono::steady_clock::now();
   const auto started = fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now()));
@@ -203,6 +230,7 @@ ExitCode run(const Arguments& arguments, const std::string& command) {
                            cmap::thread_count(),
                            std::string(cmap::simd_level_name(cmap::simd_level()))};
   refuse_overwriting(arguments);
+  check_outputs(arguments);
   const cmap::EvaluationOptions options = resolve_options(arguments);
   std::vector<cmap::Requirement> requirements;
   for (const std::string& text : arguments.requirements) requirements.push_back(cmap::parse_requirement(text, options));
@@ -242,8 +270,7 @@ int main(int argc, char** argv) {
     for (auto& [name, text] : arguments.option_texts) {
       if (app.count("--" + name) > 0) arguments.given.insert(name);
     }
-    const std::vector<std::string> command(argv, argv + argc);
-    return static_cast<int>(run(arguments, fmt::format("{}", fmt::join(command, " "))));
+    return static_cast<int>(run(arguments, as_typed(argv, argc)));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
     fmt::print(stderr, "cmap_eval: {}\nRun cmap_eval --help for usage.\n", error.what());

@@ -19,8 +19,10 @@ namespace {
 using cmap::PointCloud;
 
 constexpr double kRadius_m = 0.5;
-constexpr double kTau = 0.1;
 constexpr double kEntropyRadius_m = 0.2;
+
+/// The stricter, the farther one has to look for the right color.
+double tau_of(const benchmark::State& state) { return 0.01 * static_cast<double>(state.range(1)); }
 
 cmap::MapPair pair_of(const cmap::benchmarks::TownPair& town) {
   cmap::MapPair pair{cmap::IndexedMap(town.reference), cmap::IndexedMap(town.estimate), {}, {}};
@@ -31,7 +33,7 @@ cmap::MapPair pair_of(const cmap::benchmarks::TownPair& town) {
 void recall_cmap(benchmark::State& state) {
   const cmap::MapPair pair = pair_of(cmap::benchmarks::town(state.range(0), false));
   std::uint64_t n_recalled = 0;
-  for (auto _ : state) n_recalled = cmap::local_color_recall(pair, {kTau, kRadius_m, false}).n_recalled;
+  for (auto _ : state) n_recalled = cmap::local_color_recall(pair, {tau_of(state), kRadius_m, false}).n_recalled;
   state.counters["recalled"] = static_cast<double>(n_recalled);
 }
 
@@ -47,7 +49,8 @@ void entropy_cmap(benchmark::State& state) {
 /// A result set that stops the search at the first neighbor of the right color.
 class FirstRightColor {
  public:
-  FirstRightColor(const PointCloud& cloud, const cmap::RgbF& color) : cloud_(cloud), color_(color) {}
+  FirstRightColor(const PointCloud& cloud, const cmap::RgbF& color, float limit)
+      : cloud_(cloud), color_(color), limit_(limit) {}
   bool found() const { return found_; }
 
   // nanoflann's interface
@@ -58,24 +61,26 @@ class FirstRightColor {
     if (sq_dist > worstDist()) return true;
     const cmap::RgbF c = cmap::rgb_255(cloud_.colors, index);
     const float dr = c[0] - color_[0], dg = c[1] - color_[1], db = c[2] - color_[2];
-    found_ = dr * dr + dg * dg + db * db <= static_cast<float>(3 * kTau * 255 * 3 * kTau * 255);
+    found_ = dr * dr + dg * dg + db * db <= limit_;
     return !found_;
   }
 
  private:
   const PointCloud& cloud_;
   cmap::RgbF color_;
+  float limit_;
   bool found_ = false;
 };
 
 void recall_nanoflann_early_exit(benchmark::State& state) {
   const auto& town = cmap::benchmarks::town(state.range(0), false);
   const cmap::benchmarks::NanoflannIndex index(town.estimate);
+  const auto limit = static_cast<float>(std::pow(3.0 * tau_of(state) * 255.0, 2));
   std::uint64_t n_recalled = 0;
   for (auto _ : state) {
     n_recalled = 0;
     for (std::size_t j = 0; j < town.reference.size(); ++j) {
-      FirstRightColor result(town.estimate, cmap::rgb_255(town.reference.colors, j));
+      FirstRightColor result(town.estimate, cmap::rgb_255(town.reference.colors, j), limit);
       index.tree.findNeighbors(result, town.reference.positions[j].data(), nanoflann::SearchParams());
       n_recalled += result.found() ? 1 : 0;
     }
@@ -110,14 +115,26 @@ void entropy_nanoflann(benchmark::State& state) {
 
 #endif
 
-void sizes(benchmark::internal::Benchmark* b) {
-  b->ArgNames({"points"})->Unit(benchmark::kSecond)->MeasureProcessCPUTime()->Arg(1'000'000)->Arg(10'000'000);
+void sizes_and_taus(benchmark::internal::Benchmark* b) {
+  b->ArgNames({"points", "percent_tau"})->Unit(benchmark::kSecond)->MeasureProcessCPUTime()->MinWarmUpTime(0.001);
+  for (long percent_tau : {10, 3, 1}) {
+    for (long points : {1'000'000, 10'000'000}) b->Args({points, percent_tau});
+  }
 }
 
-BENCHMARK(recall_cmap)->Apply(sizes);
+void sizes(benchmark::internal::Benchmark* b) {
+  b->ArgNames({"points"})
+      ->Unit(benchmark::kSecond)
+      ->MeasureProcessCPUTime()
+      ->MinWarmUpTime(0.001)
+      ->Arg(1'000'000)
+      ->Arg(10'000'000);
+}
+
+BENCHMARK(recall_cmap)->Apply(sizes_and_taus);
 BENCHMARK(entropy_cmap)->Apply(sizes);
 #ifdef CMAP_WITH_NANOFLANN
-BENCHMARK(recall_nanoflann_early_exit)->Apply(sizes);
+BENCHMARK(recall_nanoflann_early_exit)->Apply(sizes_and_taus);
 BENCHMARK(entropy_nanoflann)->Apply(sizes);
 #endif
 

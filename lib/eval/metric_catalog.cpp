@@ -15,6 +15,11 @@ bool equal_ignoring_case(std::string_view a, std::string_view b) {
   return std::ranges::equal(a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
 }
 
+bool is_called(const MetricInfo& metric, std::string_view id_or_symbol) {
+  return equal_ignoring_case(metric.id, id_or_symbol) ||
+         (!metric.symbol.empty() && equal_ignoring_case(metric.symbol, id_or_symbol));
+}
+
 bool is_in_group(const MetricInfo& metric, std::string_view group) {
   if (group == "default")
     return metric.group == "color" || metric.group == "geometry" || metric.group == "distribution";
@@ -49,11 +54,9 @@ const std::vector<MetricInfo>& metric_catalog() {
 }
 
 const MetricInfo* find_metric(std::string_view id_or_symbol) {
-  for (const MetricInfo& metric : metric_catalog()) {
-    if (equal_ignoring_case(metric.id, id_or_symbol)) return &metric;
-    if (!metric.symbol.empty() && equal_ignoring_case(metric.symbol, id_or_symbol)) return &metric;
-  }
-  return nullptr;
+  const auto metric =
+      std::ranges::find_if(metric_catalog(), [&](const MetricInfo& m) { return is_called(m, id_or_symbol); });
+  return metric == metric_catalog().end() ? nullptr : &*metric;
 }
 
 MetricSelection select_metrics(const EvaluationOptions& options) {
@@ -62,7 +65,7 @@ MetricSelection select_metrics(const EvaluationOptions& options) {
   for (const std::string& name : options.metrics.empty() ? kDefault : options.metrics) {
     bool known = false;
     for (const MetricInfo& metric : metric_catalog()) {
-      if (metric.id != name && !is_in_group(metric, name)) continue;
+      if (!is_called(metric, name) && !is_in_group(metric, name)) continue;
       known = true;
       selection.ids.insert(metric.id);
       if (metric.needs_color && name != "all" && name != "default") selection.color_is_required = true;
@@ -71,8 +74,8 @@ MetricSelection select_metrics(const EvaluationOptions& options) {
       std::vector<std::string_view> ids;
       for (const MetricInfo& metric : metric_catalog()) ids.push_back(metric.id);
       throw UsageError(
-          fmt::format("metrics: \"{}\" is unknown; groups are default, color, color+, geometry, distribution, mme, "
-                      "all; metrics are {}",
+          fmt::format("metrics: \"{}\" is unknown; groups are default, color, color+, geometry, distribution, mme, all;"
+                      "\nmetrics are {}",
                       name, fmt::join(ids, ", ")));
     }
   }

@@ -127,10 +127,18 @@ double number_from_text(const OptionSpec& spec, const std::string& text) {
   return value;
 }
 
+/// The parts between commas, without the blanks around them.
 std::vector<std::string> split(const std::string& text) {
+  constexpr std::string_view kBlanks = " \t";
   std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
+  if (text.find_first_not_of(kBlanks) == text.npos) return parts;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', begin), text.size());
+    const std::string part = text.substr(begin, comma - begin);
+    const std::size_t first = part.find_first_not_of(kBlanks);
+    parts.push_back(first == part.npos ? "" : part.substr(first, part.find_last_not_of(kBlanks) + 1 - first));
+    begin = comma + 1;
+  }
   return parts;
 }
 
@@ -172,8 +180,9 @@ Json value_from_text(const OptionSpec& spec, const std::string& text) {
 
 const std::vector<OptionSpec>& evaluation_option_specs() {
   static const std::vector<OptionSpec> specs{
-      CMAP_OPTION("metrics", kWords, "LIST", "groups (color, color+, geometry, distribution, mme, all) or metric ids",
-                  metrics, metric_names(n, value), o.metrics.empty() ? std::vector<std::string>{"default"} : o.metrics),
+      CMAP_OPTION("metrics", kWords, "LIST",
+                  "groups (color, color+, geometry, distribution, mme, all), metric ids or symbols", metrics,
+                  metric_names(n, value), o.metrics.empty() ? std::vector<std::string>{"default"} : o.metrics),
       CMAP_OPTION("thresholds", kNumbers, "METERS,...", "of accuracy, fitness, completeness, F-score", thresholds_m,
                   thresholds(n, value), o.thresholds_m),
       CMAP_OPTION("overlap-distance", kNumber, "METERS", "of overlap, truncated Chamfer and inlier RMSE",
@@ -235,7 +244,8 @@ void apply_config(EvaluationOptions& options, const std::string& json_text, cons
       spec->set(options, value);
     }
   } catch (const Json::exception& error) {
-    throw UsageError(fmt::format("{}: {}", source, error.what()));
+    const std::string_view message = error.what();  // "[json.exception...] parse error at line 1, column 2: ..."
+    throw UsageError(fmt::format("{}: {}", source, message.substr(message.find(']') + 2)));
   } catch (const UsageError& error) {
     throw UsageError(fmt::format("{}: {}", source, error.what()));
   }

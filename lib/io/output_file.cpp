@@ -96,4 +96,8 @@ void OutputFile::commit() {
   temporary_.clear();
 }
 
+void require_writable(const fs::path& path) {
+  if (!is_written_directly(path)) const OutputFile created_and_removed(path);
+}
+
 }  // namespace cmap

@@ -19,32 +19,41 @@ float color_limit(double tau) { return static_cast<float>((3.0 * tau * 255.0) * 
 
 float next_above(float v) { return std::nextafter(v, std::numeric_limits<float>::infinity()); }
 
-/// Squared color distances of the covered reference points to the most similar estimated color within the radius,
-/// exact above `stop_at`; nothing beyond `limit` is looked for. Points without cover are left at 0.
-Array<float> best_color_distances(const MapPair& pair, double radius_m, float stop_at, float limit) {
-  const NearestPairs pairs = pair.reference_to_estimate();
-  Array<float> best(pairs.size());
-  parallel_chunks(pairs.size(), kLoopChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto sq_color = static_cast<float>((pairs.from_color(i) - pairs.to_color(i)).squaredNorm());
-      best[i] = pairs.distance_m(i) <= radius_m ? std::min(sq_color, next_above(limit)) : 0.0f;
-    }
-  });
-  const IndexedMap& estimate = pair.estimate;
-  lower_color_distance(estimate.index, estimate.colors, color_boxes(estimate.colors), pair.reference.index.points,
-                       pair.reference.colors, {radius_m, stop_at}, best);
-  return best;
+RecallClass class_of(float sq_color, float right) {
+  if (sq_color == kNoneWithin) return RecallClass::kNotCovered;
+  return sq_color <= right ? RecallClass::kRecalled : RecallClass::kWrongColor;
 }
 
-RecallCurve recall_curve(const NearestPairs& pairs, const Array<float>& best, double radius_m) {
+struct RecallCounts {
+  std::uint64_t n_covered = 0, n_recalled = 0;
+  RecallCounts& operator+=(const RecallCounts& other) {
+    n_covered += other.n_covered;
+    n_recalled += other.n_recalled;
+    return *this;
+  }
+};
+
+/// Fills in the classes of all points and counts them.
+RecallCounts classify(const Array<float>& best, float right, Array<RecallClass>& classes) {
+  return ordered_sum<RecallCounts>(classes.size(), kLoopChunk, [&](std::size_t begin, std::size_t end) {
+    RecallCounts counts;
+    for (std::size_t j = begin; j < end; ++j) {
+      classes[j] = class_of(best[j], right);
+      counts.n_covered += classes[j] != RecallClass::kNotCovered ? 1 : 0;
+      counts.n_recalled += classes[j] == RecallClass::kRecalled ? 1 : 0;
+    }
+    return counts;
+  });
+}
+
+RecallCurve recall_curve(const Array<float>& best, std::size_t n) {
   RecallCurve curve;
   for (int i = 0; i < kCurvePoints; ++i) {
     std::uint64_t n_recalled = 0;
-    for (std::size_t j = 0; j < pairs.size(); ++j) {
-      n_recalled += pairs.distance_m(j) <= radius_m && best[j] <= color_limit(curve_tau(i)) ? 1 : 0;
-    }
+    const float right = color_limit(curve_tau(i));
+    for (std::size_t j = 0; j < n; ++j) n_recalled += class_of(best[j], right) == RecallClass::kRecalled ? 1 : 0;
     curve.tau.push_back(curve_tau(i));
-    curve.value.push_back(static_cast<double>(n_recalled) / static_cast<double>(pairs.size()));
+    curve.value.push_back(static_cast<double>(n_recalled) / static_cast<double>(n));
   }
   for (std::size_t i = 1; i < curve.tau.size(); ++i) {
     curve.area += 0.5 * (curve.value[i] + curve.value[i - 1]) * (curve.tau[i] - curve.tau[i - 1]);
@@ -60,22 +69,17 @@ LocalColorRecall local_color_recall(const MapPair& pair, const LocalColorRecallO
   const float right = color_limit(options.tau);
   const float stop_at = options.curve ? std::min(right, color_limit(curve_tau(0))) : right;
   const float limit = options.curve ? std::max(right, color_limit(curve_tau(kCurvePoints - 1))) : right;
-  const Array<float> best = best_color_distances(pair, options.radius_m, stop_at, limit);
+  const Array<float> best =
+      most_similar_color(pair.estimate.index, pair.estimate.colors, pair.reference.index.points, pair.reference.colors,
+                         pair.nearest_in_estimate, {options.radius_m, stop_at, next_above(limit)});
 
-  const NearestPairs pairs = pair.reference_to_estimate();
   LocalColorRecall recall;
-  recall.n_reference = pairs.size();
-  recall.classes.resize(pairs.size());
-  for (std::size_t j = 0; j < pairs.size(); ++j) {
-    const bool covered = pairs.distance_m(j) <= options.radius_m;
-    const bool recalled = covered && best[j] <= right;
-    recall.classes[j] = recalled  ? RecallClass::kRecalled
-                        : covered ? RecallClass::kWrongColor
-                                  : RecallClass::kNotCovered;
-    recall.n_covered += covered ? 1 : 0;
-    recall.n_recalled += recalled ? 1 : 0;
-  }
-  if (options.curve) recall.curve = recall_curve(pairs, best, options.radius_m);
+  recall.n_reference = pair.reference.size();
+  recall.classes.resize(recall.n_reference);
+  const RecallCounts counts = classify(best, right, recall.classes);
+  recall.n_covered = counts.n_covered;
+  recall.n_recalled = counts.n_recalled;
+  if (options.curve) recall.curve = recall_curve(best, recall.n_reference);
   return recall;
 }
 

@@ -23,9 +23,11 @@ std::string digits(const Json& value) {
   return fmt::format("{:.{}f}", value.get<double>(), std::max(0, 4 - before_point));
 }
 
-/// A share in percent, without the sign.
+/// A share in percent, without the sign; one that is not zero does not look like it.
 std::string hundredths(const Json& value) {
-  return value.is_number() ? fmt::format("{:.2f}", 100.0 * value.get<double>()) : std::string(kMissing);
+  if (!value.is_number()) return std::string(kMissing);
+  const double percent = 100.0 * value.get<double>();
+  return percent > 0.0 && percent < 0.005 ? "< 0.01" : fmt::format("{:.2f}", percent);
 }
 
 std::string percent(const Json& value) { return value.is_number() ? hundredths(value) + " %" : std::string(kMissing); }
@@ -130,8 +132,9 @@ std::string threshold_line(const Json& metric) {
 }
 
 std::string input_line(const char* which, const Json& input) {
-  return fmt::format("{:<9} {}: {} points, {}, color {}\n", which, input.at("path").get<std::string>(),
-                     with_thousands(input.at("finite_points")), input.at("format").get<std::string>(),
+  const Json& n = input.at("finite_points");
+  return fmt::format("{:<9} {}: {} point{}, {}, color {}\n", which, input.at("path").get<std::string>(),
+                     with_thousands(n), n == 1 ? "" : "s", input.at("format").get<std::string>(),
                      input.at("color").get<std::string>());
 }
 
@@ -153,10 +156,12 @@ std::string alias_lines(const std::string& prefix, const Json& value) {
     }
     return lines;
   }
-  return fmt::format(" {} {}\n", padded(prefix, 41),
-                     value.is_string() ? value.get<std::string>()
-                     : value.is_null() ? std::string(kMissing)
-                                       : value.dump());
+  constexpr int kDigits = 10;  // what such tools print, at most
+  const std::string text = value.is_string()         ? value.get<std::string>()
+                           : value.is_number_float() ? fmt::format("{:.{}g}", value.get<double>(), kDigits)
+                           : value.is_null()         ? "no value"
+                                                     : value.dump();
+  return fmt::format(" {} {}\n", padded(prefix, 41), text);
 }
 
 }  // namespace

@@ -10,17 +10,17 @@ namespace {
 constexpr std::size_t kQueryChunk = 256;
 }
 
-void lower_color_distance(const Bvh& index, const Array<ColorBlock>& index_colors, const BoxLevels& index_color_boxes,
-                          const PointBlocks& queries, const Array<ColorBlock>& query_colors, const ColorSearch& search,
-                          Array<float>& best) {
-  // Whole blocks are read and written: the lanes after the last query are done before they begin.
-  best.resize(queries.blocks.size() * kBlockSize, search.stop_at);
+Array<float> most_similar_color(const Bvh& index, const Array<ColorBlock>& index_colors, const PointBlocks& queries,
+                                const Array<ColorBlock>& query_colors, const NearestField& nearest,
+                                const ColorSearch& search) {
+  Array<float> best(queries.size);
+  const BoxLevels boxes = color_boxes(index_colors);
   const Queries moved{queries, queries.origin - index.points.origin};
   parallel_chunks(queries.blocks.size(), kQueryChunk, [&](std::size_t begin, std::size_t end) {
-    kernels().lower_color_distance(index, index_colors, index_color_boxes, moved, query_colors, search, begin, end,
-                                   best);
+    kernels().most_similar_color({index, index_colors, boxes}, {moved, query_colors, nearest}, search, begin, end,
+                                 best);
   });
-  best.resize(queries.size);
+  return best;
 }
 
 NeighborhoodShape neighborhood_shapes(const Bvh& cloud, double radius_m) {

@@ -104,6 +104,10 @@ TEST(SelectMetrics, TakesGroupsAndIds) {
   EXPECT_EQ(ids_of({"mme", "mean_map_entropy"}), kEntropy);
 }
 
+TEST(SelectMetrics, SymbolsAndAnyCaseNameAMetric) {
+  EXPECT_EQ(ids_of({"LCR", "cd#", "RMSE"}), (Ids{"local_color_recall", "chamfer", "rmse"}));
+}
+
 TEST(SelectMetrics, ColorIsRequiredWhereItIsNamed) {
   const auto required = [](std::vector<std::string> metrics) {
     return select_metrics(options_for(std::move(metrics))).color_is_required;

@@ -108,6 +108,12 @@ TEST(Options, TakeWholeNumbersInAnyNotation) {
   EXPECT_EQ(options.lcr_radius_m, 1.0);
 }
 
+TEST(Options, ListsMayHaveBlanks) {
+  EvaluationOptions options;
+  set_option(options, spec("thresholds"), "0.2, 0.1");
+  EXPECT_EQ(options.thresholds_m, (std::vector<double>{0.2, 0.1}));
+}
+
 TEST(Options, ALaterOneWins) {
   EvaluationOptions options;
   apply_preset(options, "indoor");
@@ -179,6 +185,7 @@ INSTANTIATE_TEST_SUITE_P(Options, BadText,
                                            Refused{"metrics", "color,nope", R"("nope" is unknown)"},
                                            Refused{"thresholds", "", "is not a list of numbers"},
                                            Refused{"thresholds", "0.2,,0.1", R"("" is not a number)"},
+                                           Refused{"thresholds", "0.2,", R"("" is not a number)"},
                                            Refused{"thresholds", "0.2,x", R"("x" is not a number)"},
                                            Refused{"thresholds", "0.2,-0.1", "must be above 0 throughout"},
                                            Refused{"lcr-radius", "", R"("" is not a number)"},

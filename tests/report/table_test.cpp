@@ -52,6 +52,23 @@ TEST(Table, StartsWithBothMaps) {
                                 "estimate  est.ply: 3,000 points, PLY ascii, color u8\n"));
 }
 
+TEST(Table, CountsOnePoint) {
+  const std::string table = format_table(report_of(gray_map({{0, 0, 0}}), gray_map({{0, 0, 1}, {0, 1, 0}})));
+  EXPECT_THAT(table, StartsWith("reference ref.ply: 1 point, PLY ascii"));
+  EXPECT_THAT(table, HasSubstr("est.ply: 2 points,"));
+}
+
+TEST(Table, ASmallShareIsNotShownAsZero) {
+  auto report = report_of(gray_map({{0, 0, 0}}), gray_map({{0, 0, 0}}), options_for({"overlap"}));
+  const auto shown = [&](double share) {
+    report["metrics"]["overlap"]["value"] = share;
+    return line_with(format_table(report), "Overlap");
+  };
+  EXPECT_THAT(shown(0.0), HasSubstr(" 0.00 %"));
+  EXPECT_THAT(shown(4e-5), HasSubstr(" < 0.01 %"));
+  EXPECT_THAT(shown(6e-5), HasSubstr(" 0.01 %"));
+}
+
 TEST(Table, ShowsEveryMetricUnderItsGroup) {
   const std::string table = full_table();
   std::size_t place = 0;

@@ -17,69 +17,68 @@ Eigen::Vector3f color(const PointCloud& cloud, std::size_t i) {
   return {c[0], c[1], c[2]};
 }
 
-struct ColoredIndex {
-  explicit ColoredIndex(const PointCloud& cloud)
-      : bvh(sort_points(cloud)), colors(sort_colors(cloud, bvh.points)), boxes(color_boxes(colors)) {}
-  Bvh bvh;
+struct ColoredMap {
+  explicit ColoredMap(const PointCloud& cloud) : index(sort_points(cloud)), colors(sort_colors(cloud, index.points)) {}
+  Bvh index;
   Array<ColorBlock> colors;
-  BoxLevels boxes;
 };
 
-void expect_equals_brute_force(const PointCloud& data, const PointCloud& queries, const ColorSearch& search,
-                               float start) {
-  const ColoredIndex index(data);
-  const ColoredIndex query(queries);
-  Array<float> best(queries.size(), start);
-  lower_color_distance(index.bvh, index.colors, index.boxes, query.bvh.points, query.colors, search, best);
+/// By the queries' own order.
+Array<float> most_similar(const PointCloud& data, const PointCloud& queries, const ColorSearch& search) {
+  const ColoredMap target(data);
+  const ColoredMap query(queries);
+  return in_original_order(query.index.points,
+                           most_similar_color(target.index, target.colors, query.index.points, query.colors,
+                                              find_nearest(target.index, query.index.points), search));
+}
+
+void expect_equals_brute_force(const PointCloud& data, const PointCloud& queries, const ColorSearch& search) {
+  const Array<float> best = most_similar(data, queries, search);
   ASSERT_EQ(best.size(), queries.size());
-  best = in_original_order(query.bvh.points, best);
   for (std::size_t i = 0; i < queries.size(); ++i) {
-    float lowest = start;
+    float lowest = INFINITY;
     for (std::size_t j = 0; j < data.size(); ++j) {
       if ((queries.world(i) - data.world(j)).squaredNorm() <= search.radius_m * search.radius_m) {
         lowest = std::min(lowest, sq_color_distance(color(queries, i), color(data, j)));
       }
     }
-    if (lowest > search.stop_at) {
-      ASSERT_EQ(best[i], lowest) << i;
+    if (lowest == INFINITY) {
+      ASSERT_EQ(best[i], kNoneWithin) << i;
+    } else if (lowest > search.stop_at) {
+      ASSERT_EQ(best[i], std::min(lowest, search.unless_below)) << i;
     } else {
+      ASSERT_GE(best[i], 0.0f) << i;
       ASSERT_LE(best[i], search.stop_at) << i;
     }
   }
 }
 
-TEST(LowerColorDistance, EqualsBruteForce) {
+TEST(MostSimilarColor, EqualsBruteForce) {
   PointCloud data = test::sheet_cloud(3000, 1);
   PointCloud queries = test::sheet_cloud(2000, 2);
   test::paint(data, 3);
   test::paint(queries, 4);
-  expect_equals_brute_force(data, queries, {0.5, 0.0f}, INFINITY);
-  expect_equals_brute_force(data, queries, {0.5, 5852.25f}, 5853.0f);
-  expect_equals_brute_force(data, queries, {2.0, 500.0f}, 1000.0f);
+  expect_equals_brute_force(data, queries, {0.5, 0.0f, INFINITY});
+  expect_equals_brute_force(data, queries, {0.5, 5852.25f, 5853.0f});
+  expect_equals_brute_force(data, queries, {2.0, 500.0f, 1000.0f});
+  expect_equals_brute_force(data, queries, {0.02, 0.0f, 20000.0f});
 }
 
-TEST(LowerColorDistance, TheRadiusIsInclusiveAndDecidedInDouble) {
+TEST(MostSimilarColor, TheRadiusIsInclusiveAndDecidedInDouble) {
   PointCloud data, queries;
   data.positions = {{0, 0, 0}};
   data.colors = Array<Rgb8>{{10, 0, 0}};
   queries.positions = {{0.5f, 0, 0}, {0.50000006f, 0, 0}};  // the float after 0.5
   queries.colors = Array<Rgb8>{{13, 0, 0}, {13, 0, 0}};
-  const ColoredIndex index(data);
-  const ColoredIndex query(queries);
-  Array<float> best(2, 100.0f);
-  lower_color_distance(index.bvh, index.colors, index.boxes, query.bvh.points, query.colors, {0.5, 0.0f}, best);
-  best = in_original_order(query.bvh.points, best);
-  EXPECT_EQ(best[0], 9.0f);
-  EXPECT_EQ(best[1], 100.0f);
+  EXPECT_EQ(most_similar(data, queries, {0.5, 0.0f, 100.0f}), (Array<float>{9.0f, kNoneWithin}));
 }
 
-TEST(LowerColorDistance, DoneQueriesAreLeftAlone) {
+TEST(MostSimilarColor, NothingWithinTheRadius) {
   PointCloud cloud = test::uniform_cloud(100, 5);
   test::paint(cloud, 6);
-  const ColoredIndex index(cloud);
-  Array<float> best(100, 7.0f);
-  lower_color_distance(index.bvh, index.colors, index.boxes, index.bvh.points, index.colors, {1.0, 7.0f}, best);
-  EXPECT_EQ(best, Array<float>(100, 7.0f));
+  PointCloud far = cloud;
+  far.origin.x() += 1000.0;
+  EXPECT_EQ(most_similar(far, cloud, {1.0, 0.0f, INFINITY}), Array<float>(100, kNoneWithin));
 }
 
 TEST(NeighborhoodShapes, EqualBruteForce) {

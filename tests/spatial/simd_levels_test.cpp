@@ -45,7 +45,7 @@ TEST_P(SimdLevels, Nearest) {
   }
 }
 
-TEST_P(SimdLevels, LowerColorDistance) {
+TEST_P(SimdLevels, MostSimilarColor) {
   PointCloud data = test::sheet_cloud(20000, 4);
   PointCloud query_cloud = test::sheet_cloud(16000, 5);
   test::paint(data, 6);
@@ -55,11 +55,14 @@ TEST_P(SimdLevels, LowerColorDistance) {
   const BoxLevels boxes = color_boxes(colors);
   const PointBlocks points = sort_points(query_cloud);
   const Array<ColorBlock> query_colors = sort_colors(query_cloud, points);
+  const NearestField nearest = find_nearest(index, points);
   const Queries queries{points, Eigen::Vector3d::Zero()};
-  Array<float> best(points.size, 3000.0f), expected(points.size, 3000.0f);
-  const ColorSearch search{0.3, 100.0f};
-  level().lower_color_distance(index, colors, boxes, queries, query_colors, search, 0, points.blocks.size(), best);
-  plain().lower_color_distance(index, colors, boxes, queries, query_colors, search, 0, points.blocks.size(), expected);
+  const ColoredIndex target{index, colors, boxes};
+  const ColorQueries colored{queries, query_colors, nearest};
+  Array<float> best(points.size), expected(points.size);
+  const ColorSearch search{0.3, 100.0f, 3000.0f};
+  level().most_similar_color(target, colored, search, 0, points.blocks.size(), best);
+  plain().most_similar_color(target, colored, search, 0, points.blocks.size(), expected);
   EXPECT_EQ(best, expected);
 }
 

@@ -233,6 +233,16 @@ class BadOutputs(CmapEval):
             result = self.run_program(self.reference, self.estimate, *output)
             self.expect_refusal(result, USAGE, f"{path}: cannot be written: No such file or directory")
 
+    def test_it_is_noticed_before_the_work(self):
+        missing = self.folder / "missing.ply"  # noticed later
+        for output in self.outputs_of(self.outputs / "none/out"):
+            self.expect_refusal(self.run_program(missing, missing, *output), USAGE, "cannot be written")
+
+    def test_point_errors_are_ply(self):
+        for option in ("--export-errors", "--export-reference-errors"):
+            result = self.run_program(self.reference, self.estimate, option, self.outputs / "errors.csv")
+            self.expect_refusal(result, USAGE, "errors.csv: point errors are written as PLY")
+
     def test_a_folder_in_place_of_a_file(self):
         for output in self.outputs_of(self.folder):
             self.expect_refusal(self.run_program(self.reference, self.estimate, *output), USAGE, "Is a directory")

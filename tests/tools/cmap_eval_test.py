@@ -4,6 +4,7 @@
 import hashlib
 import json
 import os
+import shlex
 import subprocess
 import time
 import unittest
@@ -119,6 +120,11 @@ class Results(CmapEval):
             self.assertEqual(report["inputs"][which]["path"], str(path))
         self.assertIn(str(self.reference), report["run"]["command"])
         self.assertGreater(report["run"]["wall_s"], 0)
+
+    def test_the_command_can_be_typed_again(self):
+        report = self.evaluate(self.reference, self.estimate, "--require", "Overlap >= 0")
+        self.assertEqual(shlex.split(report["run"]["command"])[-2:], ["--require", "Overlap >= 0"])
+        self.assertIn("'Overlap >= 0'", report["run"]["command"])
 
     def test_every_format_is_read(self):
         for name, content, form in (

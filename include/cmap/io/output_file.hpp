@@ -31,4 +31,8 @@ class OutputFile {
   std::FILE* file_ = nullptr;
 };
 
+/// Throws the UsageError that writing to `path` would end with, where that is known beforehand: a directory that is
+/// missing, a protected file. For programs that work long before they write.
+void require_writable(const std::filesystem::path& path);
+
 }  // namespace cmap

@@ -3,22 +3,29 @@
 #include <cstdint>
 
 #include "cmap/spatial/bvh.hpp"
+#include "cmap/spatial/nearest.hpp"
 
 namespace cmap {
 
-/// Search for the most similar color within a radius, the core of local color recall.
+/// Search for the most similar color within a radius, the core of local color recall. Color distances are squared RGB
+/// distances in units of 1/255.
 struct ColorSearch {
   double radius_m = 0.5;
-  /// A query is done as soon as its squared color distance (1/255 units) is at most this.
+  /// A query is done as soon as its color distance is at most this.
   float stop_at = 0.0f;
+  /// Only smaller color distances are looked for; this stands for all others.
+  float unless_below = 0.0f;
 };
 
-/// Lowers best[s], the squared RGB distance (1/255 units) of query slot s to its most similar color so far, by every
-/// point of `index` within the radius; entries at or below `stop_at` on entry are left alone. The radius is decided in
-/// double. Returns nothing else: seed `best` with the nearest neighbor's color distance, or an upper limit of interest.
-void lower_color_distance(const Bvh& index, const Array<ColorBlock>& index_colors, const BoxLevels& index_color_boxes,
-                          const PointBlocks& queries, const Array<ColorBlock>& query_colors, const ColorSearch& search,
-                          Array<float>& best);
+/// What stands for the color distance of a query without a point within the radius.
+inline constexpr float kNoneWithin = -1.0f;
+
+/// For every query slot the color distance to the most similar point of `index` within the radius, which is decided in
+/// double; `nearest` are the queries' nearest points. Exact between `stop_at` and `unless_below`; a lower one is only
+/// known to be at most `stop_at`. Deterministic for any number of threads.
+Array<float> most_similar_color(const Bvh& index, const Array<ColorBlock>& index_colors, const PointBlocks& queries,
+                                const Array<ColorBlock>& query_colors, const NearestField& nearest,
+                                const ColorSearch& search);
 
 /// Number and covariance determinant of every point's neighbors within a radius, by slot.
 struct NeighborhoodShape {

@@ -16,25 +16,28 @@ constexpr float kColorReach = static_cast<float>(1.0 + kRounding);
 
 class ColorGroup {
  public:
-  ColorGroup(const Tree& tree, const ColorBlock* colors, const BoxLevels& color_boxes, const ColorSearch& search)
-      : tree_(tree), colors_(colors), sq_radius_(search.radius_m * search.radius_m), stop_at_(search.stop_at) {
+  ColorGroup(const Tree& tree, const ColoredIndex& target, const ColorQueries& queries, const ColorSearch& search)
+      : tree_(tree), colors_(target.colors.data()), queries_(queries), search_(search) {
+    sq_radius_ = search.radius_m * search.radius_m;
     sq_radius_surely_ = static_cast<float>(sq_radius_ * (1.0 - kRounding));
     sq_radius_perhaps_ = static_cast<float>(sq_radius_ * (1.0 + kRounding));
-    for (int l = 0; l < tree.n_levels; ++l) color_boxes_[l] = color_boxes.data()[l].data();
+    for (int l = 0; l < tree.n_levels; ++l) color_boxes_[l] = target.color_boxes.data()[l].data();
   }
 
-  void search(const PointBlock& query_block, const double* shift, const Lanes3& queries, const ColorBlock& query_colors,
-              float* best) {
-    query_block_ = &query_block;
-    shift_ = shift;
-    q_ = queries;
-    color_ = {load(query_colors.r), load(query_colors.g), load(query_colors.b)};
-    best_ = load(best);
+  /// The best color distances of a block of queries, a lane each.
+  Float16 search(std::size_t block) {
+    best_ = colors_of_nearest(block);
     update_active();
-    if (bits(active_) == 0) return;
+    if (bits(active_) == 0) return best_;
+    query_block_ = &queries_.queries.points.blocks.data()[block];
+    q_ = load_queries(*query_block_, queries_.queries.shift.data());
+    const ColorBlock& color = queries_.colors.data()[block];
+    color_ = {load(color.r), load(color.g), load(color.b)};
+    scan_around_nearest(block);
+    if (bits(active_) == 0) return best_;
     color_box_ = box_of(color_, active_);
     walk(tree_, box_of(q_, active_), *this);
-    store(best, best_);
+    return best_;
   }
 
   Mask16 children(int level, std::uint32_t node, const Float16& sq_dist) const {
@@ -57,7 +60,6 @@ class ColorGroup {
     for (std::size_t k = 0; k < kBlockSize; ++k) {
       const Float16 sq_dist = sq_dist_to(q_, p.x[k], p.y[k], p.z[k]);
       const Mask16 perhaps = less_equal(sq_dist, broadcast(sq_radius_perhaps_)) & active_;
-      if (bits(perhaps) == 0) continue;
       const Float16 color_dist = sq_color_dist(color_, colors.r[k], colors.g[k], colors.b[k]);
       const Mask16 better = perhaps & less(color_dist, best_);
       if (bits(better) == 0) continue;
@@ -70,32 +72,65 @@ class ColorGroup {
   }
 
  private:
+  /// Where the search starts: the colors of the nearest points, kNoneWithin where those are too far.
+  Float16 colors_of_nearest(std::size_t block) const {
+    const ColorBlock& color = queries_.colors.data()[block];
+    alignas(64) float best[16];
+    for (std::size_t lane = 0; lane < kBlockSize; ++lane) {
+      const std::size_t i = block * kBlockSize + lane;
+      best[lane] = kNoneWithin;
+      if (i >= queries_.queries.points.size || !(queries_.nearest.sq_dist.data()[i] <= sq_radius_)) continue;
+      const std::uint32_t slot = queries_.nearest.slot.data()[i];
+      const ColorBlock& nearest = colors_[slot / kBlockSize];
+      const std::size_t k = slot % kBlockSize;
+      const float dr = color.r[lane] - nearest.r[k];
+      const float dg = color.g[lane] - nearest.g[k];
+      const float db = color.b[lane] - nearest.b[k];
+      const float sq_dist = dr * dr + dg * dg + db * db;
+      best[lane] = sq_dist < search_.unless_below ? sq_dist : search_.unless_below;
+    }
+    return load(best);
+  }
+
+  /// The block around a nearest point mostly holds the right color, too.
+  void scan_around_nearest(std::size_t block) {
+    std::uint32_t scanned = kNoBlock;
+    for (std::uint32_t todo = bits(active_); todo != 0; todo &= bits(active_)) {
+      const std::size_t lane = static_cast<std::size_t>(first_bit(todo));
+      todo &= todo - 1;
+      const std::uint32_t around = queries_.nearest.slot.data()[block * kBlockSize + lane] / kBlockSize;
+      if (around != scanned) scan(around);
+      scanned = around;
+    }
+  }
+
   std::uint32_t within_in_double(std::uint32_t lanes, const PointBlock& p, std::size_t k) const {
+    const double* shift = queries_.queries.shift.data();
     std::uint32_t within = 0;
     for (; lanes != 0; lanes &= lanes - 1) {
       const int lane = first_bit(lanes);
-      const double dx = (static_cast<double>(query_block_->x[lane]) - static_cast<double>(p.x[k])) + shift_[0];
-      const double dy = (static_cast<double>(query_block_->y[lane]) - static_cast<double>(p.y[k])) + shift_[1];
-      const double dz = (static_cast<double>(query_block_->z[lane]) - static_cast<double>(p.z[k])) + shift_[2];
+      const double dx = (static_cast<double>(query_block_->x[lane]) - static_cast<double>(p.x[k])) + shift[0];
+      const double dy = (static_cast<double>(query_block_->y[lane]) - static_cast<double>(p.y[k])) + shift[1];
+      const double dz = (static_cast<double>(query_block_->z[lane]) - static_cast<double>(p.z[k])) + shift[2];
       if (dx * dx + dy * dy + dz * dz <= sq_radius_) within |= 1u << lane;
     }
     return within;
   }
 
   void update_active() {
-    active_ = less(broadcast(stop_at_), best_);
+    active_ = less(broadcast(search_.stop_at), best_);
     bound_ = highest(select(active_, best_, broadcast(-kInfinity)));
   }
 
   const Tree& tree_;
   const ColorBlock* colors_;
   const BoxNode* color_boxes_[8];
+  const ColorQueries& queries_;
+  const ColorSearch& search_;
   double sq_radius_;
   float sq_radius_surely_;
   float sq_radius_perhaps_;
-  float stop_at_;
   const PointBlock* query_block_ = nullptr;
-  const double* shift_ = nullptr;
   Lanes3 q_{};
   Lanes3 color_{};
   LaneBox color_box_{};
@@ -104,15 +139,16 @@ class ColorGroup {
   float bound_ = 0.0f;
 };
 
-void lower_color_distance(const Bvh& index, const Array<ColorBlock>& index_colors, const BoxLevels& index_color_boxes,
-                          const Queries& queries, const Array<ColorBlock>& query_colors, const ColorSearch& search,
-                          std::size_t begin, std::size_t end, Array<float>& best) {
-  const Tree tree(index);
-  ColorGroup group(tree, index_colors.data(), index_color_boxes, search);
+void most_similar_color(const ColoredIndex& target, const ColorQueries& queries, const ColorSearch& search,
+                        std::size_t begin, std::size_t end, Array<float>& best) {
+  const Tree tree(target.index);
+  ColorGroup group(tree, target, queries, search);
+  alignas(64) float found[16];
   for (std::size_t block = begin; block < end; ++block) {
-    const PointBlock& points = queries.points.blocks.data()[block];
-    group.search(points, queries.shift.data(), load_queries(points, queries.shift), query_colors.data()[block],
-                 best.data() + block * kBlockSize);
+    store(found, group.search(block));
+    const std::size_t n = queries.queries.points.size - block * kBlockSize;
+    for (std::size_t lane = 0; lane < kBlockSize && lane < n; ++lane)
+      best.data()[block * kBlockSize + lane] = found[lane];
   }
 }
 

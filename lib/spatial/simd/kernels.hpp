@@ -16,6 +16,18 @@ struct Queries {
   Eigen::Vector3d shift;
 };
 
+struct ColoredIndex {
+  const Bvh& index;
+  const Array<ColorBlock>& colors;
+  const BoxLevels& color_boxes;
+};
+
+struct ColorQueries {
+  const Queries& queries;
+  const Array<ColorBlock>& colors;
+  const NearestField& nearest;
+};
+
 /// Bits of the original index below the Hilbert key in a sort key.
 inline constexpr int kIndexBits = 31;
 inline constexpr int kCellBits = 11;
@@ -33,10 +45,8 @@ struct Kernels {
   void (*hilbert_keys)(const Eigen::Vector3f* positions, std::size_t n, const CurveGrid& grid,
                        std::uint64_t first_index, std::uint64_t* keys);
   void (*nearest)(const Bvh& index, const Queries& queries, std::size_t begin, std::size_t end, NearestField& result);
-  void (*lower_color_distance)(const Bvh& index, const Array<ColorBlock>& index_colors,
-                               const BoxLevels& index_color_boxes, const Queries& queries,
-                               const Array<ColorBlock>& query_colors, const ColorSearch& search, std::size_t begin,
-                               std::size_t end, Array<float>& best);
+  void (*most_similar_color)(const ColoredIndex& target, const ColorQueries& queries, const ColorSearch& search,
+                             std::size_t begin, std::size_t end, Array<float>& best);
   void (*neighborhood_shapes)(const Bvh& cloud, double radius_m, std::size_t begin, std::size_t end,
                               NeighborhoodShape& result);
 };

@@ -17,6 +17,6 @@
 namespace cmap::CMAP_LANES {
 
 extern const Kernels kKernels;
-const Kernels kKernels{&hilbert_keys, &nearest, &lower_color_distance, &neighborhood_shapes};
+const Kernels kKernels{&hilbert_keys, &nearest, &most_similar_color, &neighborhood_shapes};
 
 }  // namespace cmap::CMAP_LANES

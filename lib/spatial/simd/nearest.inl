@@ -225,7 +225,7 @@ void nearest(const Bvh& index, const Queries& queries, std::size_t begin, std::s
   std::uint32_t guesses[4];
   int n_guesses = 0;
   for (std::size_t block = begin; block < end; ++block) {
-    const Lanes3 q = load_queries(queries.points.blocks.data()[block], queries.shift);
+    const Lanes3 q = load_queries(queries.points.blocks.data()[block], queries.shift.data());
     if (n_guesses == 0) guesses[n_guesses++] = nearest_block_greedily(tree, q);
     NearestGroup group(tree, q);
     group.start_from(guesses, n_guesses);

@@ -76,10 +76,10 @@ inline Float16 sq_dist_to_child(const BoxNode& node, int c, const Lanes3& q) {
                  gap_to(q.z, node.min_z[c], node.max_z[c]));
 }
 
-inline Lanes3 load_queries(const PointBlock& block, const Eigen::Vector3d& shift) {
-  const double* s = shift.data();
-  return {load(block.x) + broadcast(static_cast<float>(s[0])), load(block.y) + broadcast(static_cast<float>(s[1])),
-          load(block.z) + broadcast(static_cast<float>(s[2]))};
+inline Lanes3 load_queries(const PointBlock& block, const double* shift) {
+  return {load(block.x) + broadcast(static_cast<float>(shift[0])),
+          load(block.y) + broadcast(static_cast<float>(shift[1])),
+          load(block.z) + broadcast(static_cast<float>(shift[2]))};
 }
 
 /// The box of the active lanes, in all lanes.
