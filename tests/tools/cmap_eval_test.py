@@ -123,8 +123,7 @@ class Results(CmapEval):
 
     def test_the_command_can_be_typed_again(self):
         report = self.evaluate(self.reference, self.estimate, "--require", "Overlap >= 0")
-        self.assertEqual(shlex.split(report["run"]["command"])[-2:], ["--require", "Overlap >= 0"])
-        self.assertIn("'Overlap >= 0'", report["run"]["command"])
+        self.assertIn("Overlap >= 0", shlex.split(report["run"]["command"]))
 
     def test_every_format_is_read(self):
         for name, content, form in (
