@@ -30,9 +30,21 @@ foreach(pair "LZF_INCLUDE_DIR;liblzf-dev" "LZF_LIBRARY;liblzf-dev" "FLANN_INCLUD
   endif()
 endforeach()
 
+# Figures: optional.
+find_package(VTK 9.1 QUIET COMPONENTS CommonDataModel IOImage RenderingCore RenderingFreeType)
+find_path(CMAP_OPENCV_INCLUDE_DIR opencv2/imgproc.hpp PATH_SUFFIXES opencv4)
+find_library(CMAP_OPENCV_CORE_LIBRARY opencv_core)
+find_library(CMAP_OPENCV_IMGPROC_LIBRARY opencv_imgproc)
+if(VTK_FOUND AND CMAP_OPENCV_INCLUDE_DIR AND CMAP_OPENCV_CORE_LIBRARY AND CMAP_OPENCV_IMGPROC_LIBRARY)
+  set(CMAP_WITH_RENDER ON)
+else()
+  set(CMAP_WITH_RENDER OFF)
+endif()
+
 function(cmap_print_summary)
   message(STATUS "cmap ${PROJECT_VERSION}, ${CMAKE_BUILD_TYPE}")
   message(STATUS "  feature      state  to change it")
+  message(STATUS "  figures      ${CMAP_WITH_RENDER}     apt-get install libvtk9-dev libopencv-imgproc-dev fonts-dejavu-core")
   message(STATUS "  tests        ${CMAP_BUILD_TESTS}     -DCMAP_BUILD_TESTS=ON|OFF (libgtest-dev)")
   message(STATUS "  benchmarks   ${CMAP_BUILD_BENCHMARKS}    -DCMAP_BUILD_BENCHMARKS=ON|OFF (libbenchmark-dev; peers: libnanoflann-dev libpcl-dev libopen3d-dev)")
   message(STATUS "  fuzzers      ${CMAP_BUILD_FUZZERS}    -DCMAP_BUILD_FUZZERS=ON|OFF (clang)")

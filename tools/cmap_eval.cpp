@@ -3,7 +3,6 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
@@ -13,15 +12,14 @@
 #include <map>
 #include <set>
 
-#include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
 #include "cmap/core/simd.hpp"
-#include "cmap/core/version.hpp"
 #include "cmap/eval/point_errors.hpp"
 #include "cmap/eval/requirement.hpp"
 #include "cmap/io/output_file.hpp"
 #include "cmap/io/transform_file.hpp"
 #include "cmap/report/report.hpp"
+#include "program.hpp"
 
 namespace {
 
@@ -262,24 +260,12 @@ ExitCode run(const Arguments& arguments, const std::string& command) {
 int main(int argc, char** argv) {
   CLI::App app(kDescription, "cmap_eval");
   app.footer(kExample);
-  app.set_version_flag("--version", fmt::format("cmap_eval {}", cmap::kVersion));
   Arguments arguments;
-  try {
-    add_options(app, arguments);
-    app.parse(argc, argv);
+  add_options(app, arguments);
+  return cmap::run_program(app, argc, argv, [&] {
     for (auto& [name, text] : arguments.option_texts) {
       if (app.count("--" + name) > 0) arguments.given.insert(name);
     }
-    return static_cast<int>(run(arguments, as_typed(argv, argc)));
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);
-    fmt::print(stderr, "cmap_eval: {}\nRun cmap_eval --help for usage.\n", error.what());
-    return static_cast<int>(ExitCode::kUsage);
-  } catch (const cmap::Error& error) {
-    fmt::print(stderr, "cmap_eval: {}\n", error.what());
-    return static_cast<int>(error.exit_code());
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "cmap_eval: internal error: {}\n", error.what());
-    return static_cast<int>(ExitCode::kInternal);
-  }
+    return run(arguments, as_typed(argv, argc));
+  });
 }

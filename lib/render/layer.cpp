@@ -1,0 +1,181 @@
+#include "cmap/render/layer.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cmap/core/color.hpp"
+#include "cmap/core/error.hpp"
+#include "cmap/core/parallel.hpp"
+
+namespace cmap {
+namespace {
+
+Rgb8 rounded(const Eigen::Vector3f& color_255) {
+  const auto byte = [](float v) { return static_cast<std::uint8_t>(std::lround(std::clamp(v, 0.0f, 255.0f))); };
+  return {byte(color_255.x()), byte(color_255.y()), byte(color_255.z())};
+}
+
+/// A color for every slot.
+template <class ColorAt>
+Array<Rgb8> painted(std::size_t n, ColorAt&& color_at_slot) {
+  Array<Rgb8> colors(n);
+  parallel_chunks(n, kLoopChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t slot = begin; slot < end; ++slot) colors[slot] = color_at_slot(slot);
+  });
+  return colors;
+}
+
+/// A number with one digit or 1.5 times a power of ten, at least `value`.
+double round_up(double value) {
+  if (!(value > 0.0)) return 1.0;
+  const double power = std::pow(10.0, std::floor(std::log10(value)));
+  for (double step : {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0}) {
+    if (value <= step * power * (1.0 + 1e-9)) return step * power;
+  }
+  return 10.0 * power;
+}
+
+double percentile(Array<float> values, double share) {
+  const auto rank = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), rank, values.end());
+  return static_cast<double>(*rank);
+}
+
+ColorScale scale_for(const Array<float>& values, ColorMap map, std::string unit, const LayerOptions& options) {
+  ColorScale scale;
+  scale.map = options.color_map.value_or(map);
+  scale.unit = std::move(unit);
+  scale.logarithmic = options.logarithmic;
+  if (options.range) {
+    scale.low = (*options.range)[0];
+    scale.high = (*options.range)[1];
+  } else {
+    constexpr double kShown = 0.95;      // the worst few may be anything
+    constexpr double kDecades = 1000.0;  // on a logarithmic scale
+    scale.high = round_up(percentile(values, kShown));
+    scale.low = scale.logarithmic ? scale.high / kDecades : 0.0;
+  }
+  return scale;
+}
+
+template <class ValueAt>
+Layer heat_map(const PointBlocks& points, std::string title, ColorMap map, std::string unit,
+               const LayerOptions& options, ValueAt&& value_at) {
+  Array<float> values(points.size);
+  parallel_chunks(points.size, kLoopChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t slot = begin; slot < end; ++slot) values[slot] = static_cast<float>(value_at(slot));
+  });
+  Layer layer;
+  layer.title = std::move(title);
+  layer.points = &points;
+  layer.scale = scale_for(values, map, std::move(unit), options);
+  layer.colors =
+      painted(points.size, [&](std::size_t slot) { return color_of(static_cast<double>(values[slot]), *layer.scale); });
+  return layer;
+}
+
+Layer height_layer(const IndexedMap& map, std::string title, const LayerOptions& options) {
+  const PointBlocks& points = map.index.points;
+  Array<float> heights(points.size);
+  for (std::size_t slot = 0; slot < points.size; ++slot) heights[slot] = static_cast<float>(points.world(slot).z());
+  LayerOptions between = options;
+  if (!between.range) {
+    const double low = percentile(heights, 0.01), high = percentile(heights, 0.99);
+    between.range = {low, high > low ? high : low + 1.0};
+  }
+  return heat_map(points, std::move(title), ColorMap::kViridis, "m", between,
+                  [&](std::size_t slot) { return heights[slot]; });
+}
+
+Layer color_layer(const IndexedMap& map, std::string title) {
+  Layer layer;
+  layer.title = std::move(title);
+  layer.points = &map.index.points;
+  layer.colors = painted(map.size(), [&](std::size_t slot) { return rounded(color_at(map.colors, slot)); });
+  return layer;
+}
+
+/// Blue, orange and gray stay apart for every kind of color blindness (Okabe and Ito 2008).
+Layer recall_layer(const Evaluation& evaluation) {
+  if (!evaluation.recall) {
+    throw UnsupportedError("layer lcr: local color recall was not computed; it needs color in both maps");
+  }
+  const std::vector<ColorClass> classes{
+      {"not covered", {187, 187, 187}}, {"wrong color", {213, 94, 0}}, {"recalled", {0, 114, 178}}};
+  Layer layer;
+  layer.title = "Local color recall";
+  layer.points = &evaluation.pair.reference.index.points;
+  layer.classes = {classes[2], classes[1], classes[0]};
+  layer.colors = painted(layer.points->size, [&](std::size_t slot) {
+    return classes[static_cast<std::size_t>(evaluation.recall->classes[slot])].color;
+  });
+  return layer;
+}
+
+std::string caption_of(const Evaluation& evaluation, std::string_view metric) {
+  const MetricRecord* record = evaluation.find(metric);
+  if (record == nullptr || !record->fields.contains("value") || !record->fields.at("value").is_number()) return "";
+  const double value = record->fields.at("value").get<double>();
+  const MetricInfo& info = *record->info;
+  if (info.id == "local_color_recall") return fmt::format("{} {:.1f} %", info.symbol, 100.0 * value);
+  return fmt::format("{} {:.4g}{}", info.symbol, value, info.unit == "1" ? "" : fmt::format(" {}", info.unit));
+}
+
+void require_color(const Evaluation& evaluation, std::string_view layer) {
+  if (!evaluation.pair.has_color()) throw UnsupportedError(fmt::format("layer {}: both maps need color", layer));
+}
+
+Layer error_layer(const Evaluation& evaluation, std::string_view name, const LayerOptions& options) {
+  const NearestPairs pairs = evaluation.pair.estimate_to_reference();
+  const PointBlocks& points = pairs.from.index.points;
+  if (name == "distance") {
+    Layer layer = heat_map(points, "Distance to the reference", ColorMap::kViridis, "m", options,
+                           [&](std::size_t slot) { return pairs.distance_m(slot); });
+    layer.caption = caption_of(evaluation, "chamfer");
+    return layer;
+  }
+  require_color(evaluation, name);
+  if (name == "delta-e") {
+    const auto lab = [](const Eigen::Vector3d& color) { return srgb_to_lab(color / 255.0); };
+    return heat_map(points, "CIEDE2000", ColorMap::kInferno, "", options, [&](std::size_t slot) {
+      return delta_e_2000(lab(pairs.from_color(slot)), lab(pairs.to_color(slot)));
+    });
+  }
+  Layer layer = heat_map(points, "Color distance", ColorMap::kInferno, "unit RGB", options, [&](std::size_t slot) {
+    return (pairs.from_color(slot) - pairs.to_color(slot)).norm() / 255.0;
+  });
+  layer.caption = caption_of(evaluation, "color_distance");
+  return layer;
+}
+
+}  // namespace
+
+const std::vector<std::string>& layer_names() {
+  static const std::vector<std::string> names{"reference", "estimate", "lcr",   "color-distance",
+                                              "distance",  "delta-e",  "height"};
+  return names;
+}
+
+Layer make_layer(const Evaluation& evaluation, std::string_view name, const LayerOptions& options) {
+  if (std::ranges::find(layer_names(), name) == layer_names().end()) {
+    throw UsageError(fmt::format("layer \"{}\" is unknown; layers are {}", name, fmt::join(layer_names(), ", ")));
+  }
+  if (name == "reference") return make_layer(evaluation.pair.reference, "Reference", options);
+  if (name == "estimate") return make_layer(evaluation.pair.estimate, "Estimate", options);
+  if (name == "height") return height_layer(evaluation.pair.estimate, "Height", options);
+  if (name == "lcr") {
+    Layer layer = recall_layer(evaluation);
+    layer.caption = caption_of(evaluation, "local_color_recall");
+    return layer;
+  }
+  return error_layer(evaluation, name, options);
+}
+
+Layer make_layer(const IndexedMap& map, const std::string& title, const LayerOptions& options) {
+  return map.has_color() ? color_layer(map, title) : height_layer(map, title + " (height)", options);
+}
+
+}  // namespace cmap

@@ -1,0 +1,63 @@
+#include <fmt/format.h>
+#include <vtkImageData.h>
+#include <vtkJPEGWriter.h>
+#include <vtkNew.h>
+#include <vtkPNGWriter.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "cmap/core/error.hpp"
+#include "cmap/render/image.hpp"
+
+namespace cmap {
+namespace {
+
+/// VTK's rows go from the bottom.
+vtkNew<vtkImageData> to_vtk(const Image& image, int channels) {
+  vtkNew<vtkImageData> result;
+  result->SetDimensions(image.width, image.height, 1);
+  result->AllocateScalars(VTK_UNSIGNED_CHAR, channels);
+  for (int y = 0; y < image.height; ++y) {
+    auto* out = static_cast<std::uint8_t*>(result->GetScalarPointer(0, image.height - 1 - y, 0));
+    const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width);
+    for (int x = 0; x < image.width; ++x, out += channels) {
+      std::copy_n(image.pixels[row + static_cast<std::size_t>(x)].data(), channels, out);
+    }
+  }
+  return result;
+}
+
+template <class Writer>
+void write_with(Writer& writer, vtkImageData* image, OutputFile& file) {
+  writer.SetInputData(image);
+  writer.WriteToMemoryOn();
+  writer.Write();
+  vtkUnsignedCharArray* bytes = writer.GetResult();
+  file.write(bytes->GetPointer(0), static_cast<std::size_t>(bytes->GetNumberOfValues()));
+}
+
+}  // namespace
+
+void write_image(const Image& image, const std::filesystem::path& name, OutputFile& file) {
+  std::string extension = name.extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (extension == ".png") {
+    vtkNew<vtkPNGWriter> writer;
+    write_with(*writer, to_vtk(image, 4), file);
+  } else if (extension == ".jpg" || extension == ".jpeg") {
+    constexpr int kQuality = 92;
+    Image opaque(image.width, image.height, {255, 255, 255, 255});
+    for (int y = 0; y < image.height; ++y) {
+      for (int x = 0; x < image.width; ++x) blend(opaque, x, y, const_cast<Image&>(image).at(x, y));
+    }
+    vtkNew<vtkJPEGWriter> writer;
+    writer->SetQuality(kQuality);
+    write_with(*writer, to_vtk(opaque, 3), file);
+  } else {
+    throw UsageError(fmt::format("{}: pictures are .png or .jpg", name.string()));
+  }
+}
+
+}  // namespace cmap

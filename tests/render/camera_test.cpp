@@ -1,0 +1,103 @@
+#include "cmap/render/camera.hpp"
+
+#include <fstream>
+
+#include "eval/eval_testing.hpp"
+
+namespace cmap {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+/// Pixel of a world point, by the formula in the header.
+Eigen::Vector2d pixel_of(const Projection& projection, const Eigen::Vector3d& p) {
+  const Eigen::Vector3d d = projection.axes * (p - projection.position);
+  const double w = projection.orthographic ? 1.0 : d.z();
+  return Eigen::Vector2d(projection.width_px, projection.height_px) / 2.0 + projection.focal_px * d.head<2>() / w;
+}
+
+TEST(Projection, RightIsRightAndUpIsUp) {
+  Camera camera;
+  camera.position = {0, -10, 0};
+  camera.target = {0, 0, 0};
+  camera.field_of_view_deg = 90.0;  // 100 pixels above and below the middle at as much tangent
+  const Projection projection(camera, 400, 200);
+  EXPECT_NEAR(projection.focal_px, 100.0, 1e-9);
+  EXPECT_TRUE(pixel_of(projection, {0, 0, 0}).isApprox(Eigen::Vector2d(200, 100)));
+  EXPECT_TRUE(pixel_of(projection, {5, 0, 0}).isApprox(Eigen::Vector2d(250, 100)));
+  EXPECT_TRUE(pixel_of(projection, {0, 0, 5}).isApprox(Eigen::Vector2d(200, 50)));
+  EXPECT_NEAR(projection.meters_per_pixel(10.0), 0.1, 1e-12);
+}
+
+class EveryView : public ::testing::TestWithParam<std::tuple<const char*, bool>> {};
+
+TEST_P(EveryView, ShowsTheWholeMapAndFillsThePicture) {
+  const auto& [name, orthographic] = GetParam();
+  const PointBlocks points = sort_points(test::sheet_cloud(5000, 1));
+  const Box3d box = box_to_show(points);
+  const Projection projection(camera_for(view_from_name(name), points, box, 1.6, orthographic), 1600, 1000);
+  Eigen::Array2d least(1e9, 1e9), most(-1e9, -1e9);
+  for (std::size_t slot = 0; slot < points.size; ++slot) {
+    const Eigen::Vector3d p = points.world(slot).cwiseMax(box.min).cwiseMin(box.max);
+    const Eigen::Array2d pixel = pixel_of(projection, p).array();
+    least = least.min(pixel);
+    most = most.max(pixel);
+  }
+  EXPECT_GE(least.minCoeff(), 0.0);
+  EXPECT_LE(most.x(), 1600.0);
+  EXPECT_LE(most.y(), 1000.0);
+  EXPECT_TRUE(most.x() - least.x() > 0.9 * 1600 || most.y() - least.y() > 0.9 * 1000);
+  EXPECT_NEAR((most + least).x() / 2.0, 800.0, 20.0);
+  EXPECT_NEAR((most + least).y() / 2.0, 500.0, 20.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Camera, EveryView,
+                         ::testing::Combine(::testing::Values("top", "oblique", "front", "side", "fit"),
+                                            ::testing::Bool()));
+
+TEST(BoxToShow, LeavesOutOutliersButNotThePoint) {
+  PointCloud cloud = test::uniform_cloud(10'000, 2, 1.0f);
+  cloud.positions[7] = {0, 0, 1e6f};
+  const Box3d box = box_to_show(sort_points(cloud));
+  EXPECT_LT((box.max - box.min).norm(), 10.0);
+  const Box3d one = box_to_show(sort_points(test::small_map({{3, 4, 5}})));
+  EXPECT_EQ(one.max - one.min, Eigen::Vector3d(1, 1, 1));
+  EXPECT_EQ(0.5 * (one.max + one.min), Eigen::Vector3d(3, 4, 5));
+}
+
+Camera camera_in(const std::string& json) {
+  const auto path = std::filesystem::path(testing::TempDir()) / "camera.json";
+  std::ofstream(path) << json;
+  return read_camera(path);
+}
+
+TEST(ReadCamera, TakesAllKeys) {
+  const Camera camera = camera_in(R"({"position_m": [1, 2, 3], "target_m": [4, 5, 6], "up": [0, 1, 0],
+                                      "view_height_m": 12.5 /* a comment */})");
+  EXPECT_EQ(camera.position, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(camera.target, Eigen::Vector3d(4, 5, 6));
+  EXPECT_EQ(camera.up, Eigen::Vector3d::UnitY());
+  EXPECT_TRUE(camera.orthographic);
+  EXPECT_EQ(camera.view_height_m, 12.5);
+}
+
+TEST(ReadCamera, RefusesByFileAndKey) {
+  const auto refusal = [](const std::string& json) { return test::refusal_of<UsageError>([&] { camera_in(json); }); };
+  EXPECT_THAT(refusal("{"), HasSubstr("camera.json: parse error at line 1"));
+  EXPECT_THAT(refusal("[]"), HasSubstr("expected a JSON object"));
+  EXPECT_THAT(refusal(R"({"position": [0, 0, 0]})"), HasSubstr("unknown key \"position\""));
+  EXPECT_THAT(refusal(R"({"position_m": [0, 0]})"), HasSubstr("position_m: expected [x, y, z]"));
+  EXPECT_THAT(refusal(R"({"position_m": [0, 0, "a"]})"), HasSubstr("is not a number"));
+  EXPECT_THAT(refusal(R"({"position_m": [0, 0, 0]})"), HasSubstr("target_m is missing"));
+  EXPECT_THAT(refusal(R"({"position_m": [0, 0, 0], "target_m": [0, 0, 0]})"), HasSubstr("are the same"));
+  EXPECT_THAT(refusal(R"({"position_m": [0, 0, 1], "target_m": [0, 0, 0]})"), HasSubstr("up is along the view"));
+  EXPECT_THAT(refusal(R"({"position_m": [1, 0, 0], "target_m": [0, 0, 0], "field_of_view_deg": 180})"),
+              HasSubstr("field_of_view_deg: 180 must lie between 0 and 180"));
+  EXPECT_THAT(test::refusal_of<UsageError>([] { read_camera("/none.json"); }),
+              StartsWith("/none.json: cannot be read"));
+  EXPECT_THAT(test::refusal_of<UsageError>([] { view_from_name("back"); }), HasSubstr("\"back\" is none of top"));
+}
+
+}  // namespace
+}  // namespace cmap

@@ -1,0 +1,92 @@
+#include "cmap/render/layer.hpp"
+
+#include "eval/eval_testing.hpp"
+
+namespace cmap {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// Floats published with matplotlib, such as 0.993248, 0.906157, 0.143936 for the end of viridis, times 255, rounded.
+TEST(ColorTable, EndsAreThoseOfThePublishedMaps) {
+  EXPECT_EQ(color_table(ColorMap::kViridis)[0], (Rgb8{68, 1, 84}));
+  EXPECT_EQ(color_table(ColorMap::kViridis)[255], (Rgb8{253, 231, 37}));
+  EXPECT_EQ(color_table(ColorMap::kInferno)[0], (Rgb8{0, 0, 4}));
+  EXPECT_EQ(color_table(ColorMap::kInferno)[255], (Rgb8{252, 255, 164}));
+  EXPECT_EQ(color_table(ColorMap::kCividis)[0], (Rgb8{0, 34, 78}));
+  EXPECT_EQ(color_table(ColorMap::kTurbo)[0], (Rgb8{48, 18, 59}));
+}
+
+TEST(ColorOf, ClampsAndKnowsNoValue) {
+  const ColorScale linear{2.0, 4.0, false, ColorMap::kViridis, "m"};
+  const auto& table = color_table(ColorMap::kViridis);
+  EXPECT_EQ(color_of(2.0, linear), table[0]);
+  EXPECT_EQ(color_of(-1.0, linear), table[0]);
+  EXPECT_EQ(color_of(4.0, linear), table[255]);
+  EXPECT_EQ(color_of(INFINITY, linear), table[255]);
+  EXPECT_EQ(color_of(2.4, linear), table[51]);
+  EXPECT_EQ(color_of(NAN, linear), (Rgb8{160, 160, 160}));
+  const ColorScale logarithmic{0.01, 1.0, true, ColorMap::kViridis, "m"};
+  EXPECT_EQ(color_of(0.0, logarithmic), table[0]);
+  EXPECT_EQ(color_of(0.1, logarithmic), table[128]);  // 127.5 rounds away from zero
+}
+
+/// A recalled point, one of the wrong color, one without cover.
+Evaluation three_points() {
+  return evaluate(test::small_map({{0, 0, 0}, {10, 0, 0}, {20, 0, 0}}, {{200, 0, 0}, {0, 200, 0}, {0, 0, 200}}),
+                  test::small_map({{0, 0, 0}, {10, 0, 0.25f}}, {{200, 0, 0}, {0, 0, 0}}),
+                  test::options_for({"chamfer", "color_distance", "local_color_recall"}));
+}
+
+Rgb8 color_at_x(const Layer& layer, double x) {
+  for (std::size_t slot = 0; slot < layer.points->size; ++slot) {
+    if (layer.points->world(slot).x() == x) return layer.colors[slot];
+  }
+  return {};
+}
+
+TEST(MakeLayer, RecallHasItsThreeClasses) {
+  const Evaluation evaluation = three_points();
+  const Layer layer = make_layer(evaluation, "lcr");
+  EXPECT_EQ(color_at_x(layer, 0.0), (Rgb8{0, 114, 178}));
+  EXPECT_EQ(color_at_x(layer, 10.0), (Rgb8{213, 94, 0}));
+  EXPECT_EQ(color_at_x(layer, 20.0), (Rgb8{187, 187, 187}));
+  ASSERT_EQ(layer.classes.size(), 3u);
+  EXPECT_EQ(layer.classes[0].label, "recalled");
+  EXPECT_EQ(layer.classes[0].color, (Rgb8{0, 114, 178}));
+  EXPECT_EQ(layer.classes[1].label, "wrong color");
+  EXPECT_EQ(layer.classes[1].color, (Rgb8{213, 94, 0}));
+  EXPECT_EQ(layer.caption, "LCR 33.3 %");
+}
+
+TEST(MakeLayer, HeatMapsShowTheirValues) {
+  const Evaluation evaluation = three_points();
+  const LayerOptions to_half{{{0.0, 0.5}}, ColorMap::kTurbo, false};
+  const Layer distance = make_layer(evaluation, "distance", to_half);
+  EXPECT_EQ(distance.points, &evaluation.pair.estimate.index.points);
+  EXPECT_EQ(color_at_x(distance, 0.0), color_table(ColorMap::kTurbo)[0]);
+  EXPECT_EQ(color_at_x(distance, 10.0), color_table(ColorMap::kTurbo)[128]);  // 0.25 m of 0.5 m
+  const Layer color = make_layer(evaluation, "color-distance", {{{0.0, 1.0}}, std::nullopt, false});
+  EXPECT_EQ(color_at_x(color, 0.0), color_table(ColorMap::kInferno)[0]);
+  EXPECT_EQ(color_at_x(color, 10.0), color_table(ColorMap::kInferno)[200]);  // 200 / 255
+}
+
+TEST(MakeLayer, MapsKeepTheirColors) {
+  const Evaluation evaluation = three_points();
+  EXPECT_EQ(color_at_x(make_layer(evaluation, "reference"), 20.0), (Rgb8{0, 0, 200}));
+  EXPECT_EQ(color_at_x(make_layer(evaluation, "estimate"), 10.0), (Rgb8{0, 0, 0}));
+}
+
+TEST(MakeLayer, RefusesWhatTheDataCannotGive) {
+  const Evaluation plain =
+      evaluate(test::small_map({{0, 0, 0}}), test::small_map({{0, 0, 1}}), test::options_for({"chamfer"}));
+  for (const char* name : {"lcr", "color-distance", "delta-e"}) {
+    EXPECT_THAT(test::refusal_of<UnsupportedError>([&] { make_layer(plain, name); }), HasSubstr(name));
+  }
+  EXPECT_THAT(test::refusal_of<UsageError>([&] { make_layer(plain, "colour"); }),
+              HasSubstr("layer \"colour\" is unknown; layers are reference, estimate, lcr"));
+  EXPECT_TRUE(make_layer(plain, "reference").scale.has_value()) << "height in place of color";
+}
+
+}  // namespace
+}  // namespace cmap

@@ -1,0 +1,97 @@
+#!/usr/bin/env python3
+"""cmap_render as a user runs it; CTest sets CMAP_RENDER and CMAP_SOURCE_DIR."""
+
+import hashlib
+import os
+import struct
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+PROGRAM = Path(os.environ["CMAP_RENDER"]).resolve()
+TOWN = Path(os.environ["CMAP_SOURCE_DIR"]).resolve() / "data_samples/town"
+REFERENCE, ESTIMATE = TOWN / "reference.ply", TOWN / "estimate.ply"
+NO_COLOR = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n"
+
+
+class Render(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        self.picture = self.folder / "figure.png"
+
+    def run_program(self, *arguments):
+        environment = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
+        return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, env=environment)
+
+    def draw(self, *arguments):
+        result = self.run_program(*arguments, "-o", self.picture)
+        self.assertEqual((result.returncode, result.stderr, result.stdout), (0, "", ""))
+        return self.picture.read_bytes()
+
+    def refused(self, code, says, *arguments):
+        result = self.run_program(*arguments)
+        self.assertEqual(result.returncode, code, result.stderr)
+        self.assertIn(says, result.stderr)
+        self.assertNotIn("internal error", result.stderr)
+        self.assertFalse(list(self.folder.glob("*.png")) + list(self.folder.glob(".*")))
+
+    def test_a_pair_without_a_display(self):
+        png = self.draw(REFERENCE, ESTIMATE, "--quiet")
+        self.assertEqual(png[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertEqual(struct.unpack(">II", png[16:24]), (1600, 1000))
+
+    def test_the_same_bytes_for_any_number_of_threads(self):
+        digests = {hashlib.sha256(self.draw(REFERENCE, ESTIMATE, "--threads", n)).hexdigest() for n in (1, 2, 2)}
+        self.assertEqual(len(digests), 1)
+
+    def test_one_map(self):
+        png = self.draw(REFERENCE, "--camera", "top", "--orthographic", "--size", "640x480", "--background", "transparent")
+        self.assertEqual(struct.unpack(">II", png[16:24]), (640, 480))
+
+    def test_jpeg(self):
+        self.picture = self.folder / "figure.jpg"
+        self.assertEqual(self.draw(REFERENCE)[:3], b"\xff\xd8\xff")
+
+    def test_wrong_usage(self):
+        out = ("-o", self.picture)
+        for says, *arguments in (
+            ("--output is required", REFERENCE),
+            ("none of top, oblique", REFERENCE, *out, "--camera", "back"),
+            ("is not WIDTHxHEIGHT", REFERENCE, *out, "--size", "640"),
+            ("is no picture", REFERENCE, *out, "--size", "0x480"),
+            ("too large", REFERENCE, *out, "--size", "100000x480"),
+            ("none of white", REFERENCE, *out, "--background", "red"),
+            ("none of viridis", REFERENCE, *out, "--color-map", "jet"),
+            ("LOW must be below HIGH", REFERENCE, ESTIMATE, *out, "--range", "1,0"),
+            ("need a second map", REFERENCE, *out, "--panels", "lcr"),
+            ('layer "colour" is unknown', REFERENCE, ESTIMATE, *out, "--panels", "colour"),
+            ("figure.bmp: pictures are .png or .jpg", REFERENCE, "-o", self.folder / "figure.bmp"),
+            ("none/figure.png: cannot be written", REFERENCE, "-o", self.folder / "none/figure.png"),
+        ):
+            with self.subTest(says):
+                self.refused(2, says, *arguments)
+
+    def test_a_camera_file(self):
+        camera = self.folder / "camera.json"
+        camera.write_text('{"position_m": [0, -50, 50], "target_m": [10, 10, 0]}')
+        self.draw(REFERENCE, "--camera", camera)
+        self.picture.unlink()
+        camera.write_text('{"position_m": [0, -50, 50], "target_m": [10, 10, 0], "zoom": 2}')
+        self.refused(2, f'{camera}: unknown key "zoom"', REFERENCE, "-o", self.picture, "--camera", camera)
+
+    def test_missing_map(self):
+        self.refused(3, "none.ply", self.folder / "none.ply", "-o", self.picture)
+
+    def test_no_color(self):
+        plain = self.folder / "plain.ply"
+        plain.write_text(NO_COLOR)
+        self.refused(4, "layer lcr", REFERENCE, plain, "-o", self.picture, "--panels", "lcr")
+        self.draw(plain)
+        self.draw(REFERENCE, plain)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,158 @@
+// cmap_render MAP [EST]: off-screen pictures of a map, or of what is wrong with one.
+
+#include <fmt/format.h>
+
+#include <sstream>
+
+#include "cmap/core/parallel.hpp"
+#include "cmap/core/progress.hpp"
+#include "cmap/io/point_cloud_file.hpp"
+#include "cmap/io/transform_file.hpp"
+#include "cmap/render/figure.hpp"
+#include "program.hpp"
+
+namespace {
+
+constexpr const char* kDescription =
+    "Draws a point-cloud map, or an estimated map beside its reference with what is wrong with it.\n"
+    "Needs no display and no GPU. Layers: reference, estimate, lcr, color-distance, distance, delta-e, height.";
+
+constexpr const char* kExample =
+    "Example:\n"
+    "  cmap_render data_samples/town/reference.ply data_samples/town/estimate.ply -o figure.png\n"
+    "\n"
+    "Exit codes: 0 done; 2 wrong usage; 3 an input is missing, malformed or without a finite point;\n"
+    "4 the inputs do not have what a layer needs; 70 internal error.";
+
+struct Arguments {
+  std::string map, estimate, output, transform;
+  std::string camera = "oblique", size = "1600x1000", background = "white", color_map;
+  std::vector<std::string> panels;
+  std::vector<double> range;
+  double point_size = 1.0;
+  int threads = 0;
+  bool orthographic = false, logarithmic = false, quiet = false;
+};
+
+void add_options(CLI::App& app, Arguments& a) {
+  app.add_option("MAP", a.map, "map to draw; with EST, the reference")->required()->type_name("FILE");
+  app.add_option("EST", a.estimate, "estimated map")->type_name("FILE");
+  app.add_option("-o,--output", a.output, "picture to write: .png or .jpg")->required()->type_name("FILE");
+  app.add_option("--panels", a.panels, "layers side by side [reference,estimate,lcr,color-distance]")
+      ->type_name("LIST")
+      ->delimiter(',')
+      ->expected(1, 9);
+  app.add_option("--camera", a.camera, "top, oblique, front, side, fit, or a JSON file [oblique]")->type_name("VIEW");
+  app.add_flag("--orthographic", a.orthographic, "parallel projection");
+  app.add_option("--size", a.size, "of the picture in pixels [1600x1000]")->type_name("WxH");
+  app.add_option("--range", a.range, "ends of the color scale of heat maps, for pictures that are to be compared")
+      ->type_name("LOW,HIGH")
+      ->delimiter(',')
+      ->expected(2);
+  app.add_flag("--log", a.logarithmic, "logarithmic color scale");
+  app.add_option("--color-map", a.color_map, "viridis, cividis, inferno or turbo")->type_name("NAME");
+  app.add_option("--background", a.background, "white, black or transparent [white]")->type_name("NAME");
+  app.add_option("--point-size", a.point_size, "factor on the size of points [1]")
+      ->type_name("FACTOR")
+      ->check(CLI::Range(0.01, 100.0).description(""));
+  app.add_option("--transform", a.transform, "4x4 matrix T_ref_est that moves the estimate into the reference frame")
+      ->type_name("FILE");
+  app.add_option("--threads", a.threads, "threads to use [all]")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4096).description(""));
+  app.add_flag("--quiet", a.quiet, "no progress");
+}
+
+cmap::FigureOptions figure_options(const Arguments& a) {
+  cmap::FigureOptions options;
+  char x = 0;
+  std::istringstream size(a.size);
+  if (!(size >> options.width_px >> x >> options.height_px) || x != 'x' || !size.eof()) {
+    throw cmap::UsageError(fmt::format("--size: \"{}\" is not WIDTHxHEIGHT", a.size));
+  }
+  options.background = cmap::background_from_name(a.background);
+  options.point_size = a.point_size;
+  return options;
+}
+
+cmap::LayerOptions layer_options(const Arguments& a) {
+  cmap::LayerOptions options;
+  options.logarithmic = a.logarithmic;
+  if (!a.color_map.empty()) options.color_map = cmap::color_map_from_name(a.color_map);
+  if (!a.range.empty()) {
+    if (!(a.range[0] < a.range[1])) throw cmap::UsageError("--range: LOW must be below HIGH");
+    if (a.logarithmic && !(a.range[0] > 0.0)) throw cmap::UsageError("--range: a logarithmic scale begins above 0");
+    options.range = {a.range[0], a.range[1]};
+  }
+  return options;
+}
+
+cmap::Camera camera_of(const Arguments& a, const cmap::PointBlocks& points, std::size_t n_panels,
+                       const cmap::FigureOptions& options) {
+  if (a.camera.ends_with(".json")) return cmap::read_camera(a.camera);
+  const cmap::View view = cmap::view_from_name(a.camera);
+  return cmap::camera_for(view, points, cmap::box_to_show(points), cmap::panel_aspect(n_panels, options),
+                          a.orthographic);
+}
+
+void draw(const Arguments& a, std::span<const cmap::Layer> layers, const cmap::PointBlocks& points,
+          const cmap::FigureOptions& options, cmap::OutputFile& file) {
+  const cmap::Image image = cmap::draw_figure(layers, camera_of(a, points, layers.size(), options), options);
+  cmap::write_image(image, a.output, file);
+}
+
+void draw_map(const Arguments& a, const cmap::FigureOptions& options, cmap::OutputFile& file) {
+  if (!a.panels.empty() || !a.transform.empty()) throw cmap::UsageError("--panels and --transform need a second map");
+  const cmap::IndexedMap map(cmap::read_point_cloud(a.map).cloud);
+  const std::vector<cmap::Layer> layers{cmap::make_layer(map, a.map, layer_options(a))};
+  draw(a, layers, map.index.points, options, file);
+}
+
+/// What the panels need of an evaluation; color only where both maps have it.
+cmap::EvaluationOptions evaluation_options(bool has_color) {
+  cmap::EvaluationOptions options;
+  options.metrics = {"chamfer"};
+  if (has_color) options.metrics = {"chamfer", "color_distance", "local_color_recall"};
+  return options;
+}
+
+void draw_pair(const Arguments& a, const cmap::FigureOptions& options, cmap::OutputFile& file) {
+  const Eigen::Matrix4d T_ref_est =
+      a.transform.empty() ? Eigen::Matrix4d::Identity().eval() : cmap::read_transform(a.transform);
+  cmap::ProgressBar progress(!a.quiet);
+  progress.update("read", 0.0);
+  cmap::PointCloud reference = cmap::read_point_cloud(a.map).cloud;
+  cmap::PointCloud estimate = cmap::read_point_cloud(a.estimate).cloud;
+  const bool has_color = reference.has_color() && estimate.has_color();
+  std::vector<std::string> panels = a.panels;
+  if (panels.empty()) {
+    panels = has_color ? std::vector<std::string>{"reference", "estimate", "lcr", "color-distance"}
+                       : std::vector<std::string>{"reference", "estimate", "distance"};
+  }
+  const cmap::Evaluation evaluation =
+      cmap::evaluate(std::move(reference), std::move(estimate), evaluation_options(has_color), T_ref_est,
+                     [&](std::string_view stage, double done) { progress.update(stage, done); });
+  std::vector<cmap::Layer> layers;
+  for (const std::string& panel : panels) layers.push_back(cmap::make_layer(evaluation, panel, layer_options(a)));
+  draw(a, layers, evaluation.pair.reference.index.points, options, file);
+}
+
+cmap::ExitCode run(const Arguments& a) {
+  const cmap::ThreadLimit limit(a.threads);
+  const cmap::FigureOptions options = figure_options(a);
+  (void)cmap::panel_aspect(std::max<std::size_t>(1, a.panels.size()), options);  // refuses sizes before the work
+  cmap::OutputFile file(a.output);
+  a.estimate.empty() ? draw_map(a, options, file) : draw_pair(a, options, file);
+  file.commit();
+  return cmap::ExitCode::kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(kDescription, "cmap_render");
+  app.footer(kExample);
+  Arguments arguments;
+  add_options(app, arguments);
+  return cmap::run_program(app, argc, argv, [&] { return run(arguments); });
+}

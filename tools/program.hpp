@@ -1,0 +1,36 @@
+#pragma once
+
+// What all programs share: how they end.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "cmap/core/error.hpp"
+#include "cmap/core/version.hpp"
+
+namespace cmap {
+
+/// Parses the command line, calls run(), and turns what it throws into a message on stderr and an exit code.
+template <class Run>
+int run_program(CLI::App& app, int argc, char** argv, Run&& run) {
+  const std::string name = app.get_name();
+  app.set_version_flag("--version", fmt::format("{} {}", name, kVersion));
+  try {
+    app.parse(argc, argv);
+    return static_cast<int>(run());
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);
+    fmt::print(stderr, "{}: {}\nRun {} --help for usage.\n", name, error.what(), name);
+    return static_cast<int>(ExitCode::kUsage);
+  } catch (const Error& error) {
+    fmt::print(stderr, "{}: {}\n", name, error.what());
+    return static_cast<int>(error.exit_code());
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}: internal error: {}\n", name, error.what());
+    return static_cast<int>(ExitCode::kInternal);
+  }
+}
+
+}  // namespace cmap
