@@ -7,6 +7,7 @@
 #include "cmap/core/color.hpp"
 #include "cmap/core/parallel.hpp"
 #include "cmap/metrics/order_statistics.hpp"
+#include "metrics/counted_sum.hpp"
 
 namespace cmap {
 namespace {
@@ -17,20 +18,10 @@ void require_colors(const IndexedMap& a, const IndexedMap& b) {
   if (!a.has_color() || !b.has_color()) throw std::invalid_argument("color metric: both maps need colors");
 }
 
-struct MeanSum {
-  double sum = 0.0;
-  std::uint64_t n = 0;
-  MeanSum& operator+=(const MeanSum& other) {
-    sum += other.sum;
-    n += other.n;
-    return *this;
-  }
-};
-
 DirectedColorDistance directed_distance(const NearestPairs& pairs, const ColorDistanceOptions& options,
                                         const Eigen::Vector3d& from_gain, const Eigen::Vector3d& to_gain) {
-  const auto total = ordered_sum<MeanSum>(pairs.size(), kLoopChunk, [&](std::size_t begin, std::size_t end) {
-    MeanSum part;
+  const auto total = ordered_sum<CountedSum>(pairs.size(), kLoopChunk, [&](std::size_t begin, std::size_t end) {
+    CountedSum part;
     for (std::size_t i = begin; i < end; ++i) {
       const double distance = pairs.distance_m(i);
       if (distance <= options.min_distance_m || distance > options.max_distance_m) continue;
@@ -119,8 +110,8 @@ DeltaEStats delta_e(const NearestPairs& pairs, double max_distance_m) {
     }
   });
   std::erase_if(values, [](double v) { return std::isnan(v); });
-  const auto total = ordered_sum<MeanSum>(values.size(), kLoopChunk, [&](std::size_t begin, std::size_t end) {
-    MeanSum part;
+  const auto total = ordered_sum<CountedSum>(values.size(), kLoopChunk, [&](std::size_t begin, std::size_t end) {
+    CountedSum part;
     for (std::size_t i = begin; i < end; ++i) part += {values[i], 1};
     return part;
   });

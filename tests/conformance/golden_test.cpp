@@ -7,16 +7,10 @@
 
 #include "conformance/real_maps.hpp"
 
-namespace cmap {
+namespace cmap::test {
 namespace {
 
 namespace fs = std::filesystem;
-using test::Json;
-using test::kTumOptions;
-using test::options_of;
-using test::Pair;
-using test::read_tum;
-using test::shared_folder;
 
 /// tum_fr1, evaluated once for all tests.
 class TumFr1 : public ::testing::Test {
@@ -195,4 +189,4 @@ TEST_F(TumFr1, FlannAgreesExceptOnTies) {
 }
 
 }  // namespace
-}  // namespace cmap
+}  // namespace cmap::test

@@ -9,16 +9,10 @@
 #include "io/io_testing.hpp"
 #include "spatial/clouds.hpp"
 
-namespace cmap {
+namespace cmap::test {
 namespace {
 
 namespace fs = std::filesystem;
-using test::Json;
-using test::kTumOptions;
-using test::options_of;
-using test::Pair;
-using test::read_tum;
-using test::shared_folder;
 
 const Eigen::Vector3d kShift_m(5e5, 4e6, 100);
 
@@ -181,4 +175,4 @@ TEST(LargeCoordinates, TheStadiumScoresTheSameFarAway) {
 }
 
 }  // namespace
-}  // namespace cmap
+}  // namespace cmap::test
