@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <list>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "cmap/core/parallel.hpp"
@@ -18,6 +19,7 @@
 #include "cmap/eval/requirement.hpp"
 #include "cmap/io/output_file.hpp"
 #include "cmap/io/transform_file.hpp"
+#include "cmap/report/figure_module.hpp"
 #include "cmap/report/report.hpp"
 #include "program.hpp"
 
@@ -39,7 +41,7 @@ constexpr const char* kExample =
 /// The command line as given.
 struct Arguments {
   std::string reference, estimate;
-  std::string output, format = "table", config, preset, transform;
+  std::string output, figure, format = "table", config, preset, transform;
   std::string estimate_errors, reference_errors;
   std::vector<std::string> requirements;
   std::map<std::string, std::string> option_texts;  ///< evaluation options by name
@@ -82,6 +84,8 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("REF", a.reference, "reference map")->required()->type_name("FILE");
   app.add_option("EST", a.estimate, "estimated map")->required()->type_name("FILE");
   app.add_option("-o,--output", a.output, "write the JSON report here")->type_name("FILE");
+  app.add_option("--figure", a.figure, "picture of both maps, local color recall and color distance: .png or .jpg")
+      ->type_name("FILE");
   app.add_option("--format", a.format, "what to print: table or json [table]")
       ->type_name("FORMAT")
       ->check(CLI::IsMember({"table", "json"}).description(""));
@@ -105,8 +109,8 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_flag("--quiet", a.quiet, "no table, no progress");
   // An unset variable of a script must not silently mean the default.
   const CLI::Validator not_empty([](std::string& text) { return text.empty() ? std::string("is empty") : ""; }, "");
-  for (const char* name :
-       {"--output", "--config", "--preset", "--transform", "--export-errors", "--export-reference-errors"}) {
+  for (const char* name : {"--output", "--figure", "--config", "--preset", "--transform", "--export-errors",
+                           "--export-reference-errors"}) {
     app.get_option(name)->check(not_empty);
   }
   add_evaluation_options(app, a);
@@ -153,7 +157,7 @@ namespace fs = std::filesystem;
 
 /// Outputs that cannot be written, or not in their format, are refused before the work.
 void check_outputs(const Arguments& a) {
-  for (const std::string& output : {a.output, a.estimate_errors, a.reference_errors}) {
+  for (const std::string& output : {a.output, a.figure, a.estimate_errors, a.reference_errors}) {
     if (!output.empty()) cmap::require_writable(output);
   }
   for (const std::string& ply : {a.estimate_errors, a.reference_errors}) {
@@ -167,7 +171,7 @@ void check_outputs(const Arguments& a) {
 /// Inputs are never modified: an output must not be one of them, under whatever name, nor another output.
 void refuse_overwriting(const Arguments& a) {
   std::vector<std::string> taken{a.reference, a.estimate, a.config, a.transform};
-  for (const std::string& output : {a.output, a.estimate_errors, a.reference_errors}) {
+  for (const std::string& output : {a.output, a.figure, a.estimate_errors, a.reference_errors}) {
     if (output.empty()) continue;
     for (const std::string& other : taken) {
       std::error_code missing;
@@ -189,7 +193,7 @@ void print(const std::string& text) {
 
 /// Prints and writes everything: all outputs or none, and none before the last one is complete.
 void deliver(const Arguments& arguments, const cmap::Evaluation& evaluation, const std::string& report_text,
-             const std::string& printed) {
+             const std::string& printed, const std::optional<cmap::FigureModule>& figures) {
   std::list<cmap::OutputFile> files;
   const auto write = [&](const std::string& path, auto&& write_to) {
     if (path.empty()) return;
@@ -198,6 +202,7 @@ void deliver(const Arguments& arguments, const cmap::Evaluation& evaluation, con
   };
   write(arguments.estimate_errors, [&](cmap::OutputFile& file) { cmap::write_estimate_errors(evaluation, file); });
   write(arguments.reference_errors, [&](cmap::OutputFile& file) { cmap::write_reference_errors(evaluation, file); });
+  write(arguments.figure, [&](cmap::OutputFile& file) { figures->write(evaluation, arguments.figure, file); });
   write(arguments.output, [&](cmap::OutputFile& file) { file.write(report_text); });
   if (!arguments.quiet) print(printed);
   for (cmap::OutputFile& file : files) file.commit();
@@ -229,6 +234,8 @@ ExitCode run(const Arguments& arguments, const std::string& command) {
                            std::string(cmap::simd_level_name(cmap::simd_level()))};
   refuse_overwriting(arguments);
   check_outputs(arguments);
+  std::optional<cmap::FigureModule> figures;
+  if (!arguments.figure.empty()) figures.emplace().check_name(arguments.figure);
   const cmap::EvaluationOptions options = resolve_options(arguments);
   std::vector<cmap::Requirement> requirements;
   for (const std::string& text : arguments.requirements) requirements.push_back(cmap::parse_requirement(text, options));
@@ -251,7 +258,8 @@ ExitCode run(const Arguments& arguments, const std::string& command) {
   const auto report = cmap::make_report(reference_description, estimate_description, evaluation, run);
   const std::string report_text = report.dump(2) + "\n";
   const bool requirements_hold = check_requirements(requirements, evaluation);
-  deliver(arguments, evaluation, report_text, arguments.format == "json" ? report_text : cmap::format_table(report));
+  deliver(arguments, evaluation, report_text, arguments.format == "json" ? report_text : cmap::format_table(report),
+          figures);
   return requirements_hold ? ExitCode::kDone : ExitCode::kRequirementFailed;
 }
 

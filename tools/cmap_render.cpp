@@ -9,6 +9,7 @@
 #include "cmap/io/point_cloud_file.hpp"
 #include "cmap/io/transform_file.hpp"
 #include "cmap/render/figure.hpp"
+#include "cmap/render/standard_figure.hpp"
 #include "program.hpp"
 
 namespace {
@@ -124,16 +125,12 @@ void draw_pair(const Arguments& a, const cmap::FigureOptions& options, cmap::Out
   cmap::PointCloud reference = cmap::read_point_cloud(a.map).cloud;
   cmap::PointCloud estimate = cmap::read_point_cloud(a.estimate).cloud;
   const bool has_color = reference.has_color() && estimate.has_color();
-  std::vector<std::string> panels = a.panels;
-  if (panels.empty()) {
-    panels = has_color ? std::vector<std::string>{"reference", "estimate", "lcr", "color-distance"}
-                       : std::vector<std::string>{"reference", "estimate", "distance"};
-  }
   const cmap::Evaluation evaluation =
       cmap::evaluate(std::move(reference), std::move(estimate), evaluation_options(has_color), T_ref_est,
                      [&](std::string_view stage, double done) { progress.update(stage, done); });
   std::vector<cmap::Layer> layers;
-  for (const std::string& panel : panels) layers.push_back(cmap::make_layer(evaluation, panel, layer_options(a)));
+  for (const std::string& panel : a.panels.empty() ? cmap::standard_panels(evaluation) : a.panels)
+    layers.push_back(cmap::make_layer(evaluation, panel, layer_options(a)));
   draw(a, layers, evaluation.pair.reference.index.points, options, file);
 }
 
@@ -141,6 +138,7 @@ cmap::ExitCode run(const Arguments& a) {
   const cmap::ThreadLimit limit(a.threads);
   const cmap::FigureOptions options = figure_options(a);
   (void)cmap::panel_aspect(std::max<std::size_t>(1, a.panels.size()), options);  // refuses sizes before the work
+  cmap::check_image_name(a.output);
   cmap::OutputFile file(a.output);
   a.estimate.empty() ? draw_map(a, options, file) : draw_pair(a, options, file);
   file.commit();

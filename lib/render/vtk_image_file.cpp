@@ -14,6 +14,19 @@
 namespace cmap {
 namespace {
 
+std::string lower_case_extension(const std::filesystem::path& name) {
+  std::string extension = name.extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  return extension;
+}
+
+bool is_png(const std::filesystem::path& name) { return lower_case_extension(name) == ".png"; }
+
+bool is_jpeg(const std::filesystem::path& name) {
+  const std::string extension = lower_case_extension(name);
+  return extension == ".jpg" || extension == ".jpeg";
+}
+
 /// VTK's rows go from the bottom.
 vtkNew<vtkImageData> to_vtk(const Image& image, int channels) {
   vtkNew<vtkImageData> result;
@@ -40,13 +53,16 @@ void write_with(Writer& writer, vtkImageData* image, OutputFile& file) {
 
 }  // namespace
 
+void check_image_name(const std::filesystem::path& name) {
+  if (!is_png(name) && !is_jpeg(name)) throw UsageError(fmt::format("{}: pictures are .png or .jpg", name.string()));
+}
+
 void write_image(const Image& image, const std::filesystem::path& name, OutputFile& file) {
-  std::string extension = name.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
-  if (extension == ".png") {
+  check_image_name(name);
+  if (is_png(name)) {
     vtkNew<vtkPNGWriter> writer;
     write_with(*writer, to_vtk(image, 4), file);
-  } else if (extension == ".jpg" || extension == ".jpeg") {
+  } else {
     constexpr int kQuality = 92;
     Image opaque(image.width, image.height, {255, 255, 255, 255});
     for (int y = 0; y < image.height; ++y) {
@@ -55,8 +71,6 @@ void write_image(const Image& image, const std::filesystem::path& name, OutputFi
     vtkNew<vtkJPEGWriter> writer;
     writer->SetQuality(kQuality);
     write_with(*writer, to_vtk(opaque, 3), file);
-  } else {
-    throw UsageError(fmt::format("{}: pictures are .png or .jpg", name.string()));
   }
 }
 

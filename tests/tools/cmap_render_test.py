@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""cmap_render as a user runs it; CTest sets CMAP_RENDER and CMAP_SOURCE_DIR."""
+"""cmap_render and cmap_eval --figure as a user runs them; CTest sets CMAP_RENDER, CMAP_EVAL and CMAP_SOURCE_DIR."""
 
 import hashlib
 import os
@@ -10,6 +10,7 @@ import unittest
 from pathlib import Path
 
 PROGRAM = Path(os.environ["CMAP_RENDER"]).resolve()
+EVAL = Path(os.environ["CMAP_EVAL"]).resolve()
 TOWN = Path(os.environ["CMAP_SOURCE_DIR"]).resolve() / "data_samples/town"
 REFERENCE, ESTIMATE = TOWN / "reference.ply", TOWN / "estimate.ply"
 NO_COLOR = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n"
@@ -22,17 +23,17 @@ class Render(unittest.TestCase):
         self.folder = Path(folder.name)
         self.picture = self.folder / "figure.png"
 
-    def run_program(self, *arguments):
+    def run_program(self, *arguments, program=PROGRAM):
         environment = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
-        return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, env=environment)
+        return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, env=environment)
 
     def draw(self, *arguments):
         result = self.run_program(*arguments, "-o", self.picture)
         self.assertEqual((result.returncode, result.stderr, result.stdout), (0, "", ""))
         return self.picture.read_bytes()
 
-    def refused(self, code, says, *arguments):
-        result = self.run_program(*arguments)
+    def refused(self, code, says, *arguments, program=PROGRAM):
+        result = self.run_program(*arguments, program=program)
         self.assertEqual(result.returncode, code, result.stderr)
         self.assertIn(says, result.stderr)
         self.assertNotIn("internal error", result.stderr)
@@ -81,6 +82,19 @@ class Render(unittest.TestCase):
         self.picture.unlink()
         camera.write_text('{"position_m": [0, -50, 50], "target_m": [10, 10, 0], "zoom": 2}')
         self.refused(2, f'{camera}: unknown key "zoom"', REFERENCE, "-o", self.picture, "--camera", camera)
+
+    def test_the_figure_of_an_evaluation(self):
+        png = self.draw(REFERENCE, ESTIMATE)
+        result = self.run_program(REFERENCE, ESTIMATE, "--figure", self.picture, "--quiet", program=EVAL)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual(self.picture.read_bytes(), png)
+
+    def test_figures_that_cannot_be(self):
+        for says, path in (
+            ("pictures are .png or .jpg", self.folder / "figure.gif"),
+            ("cannot be written", self.folder / "none/figure.png"),
+        ):
+            self.refused(2, says, REFERENCE, ESTIMATE, "--figure", path, program=EVAL)
 
     def test_missing_map(self):
         self.refused(3, "none.ply", self.folder / "none.ply", "-o", self.picture)

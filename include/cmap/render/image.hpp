@@ -36,7 +36,10 @@ void draw_text(Image& image, int x, int y, std::string_view utf8, int size_px, R
 /// Width of what draw_text would draw.
 int text_width(std::string_view utf8, int size_px);
 
-/// The format is that of the name: .png (with alpha), .jpg or .jpeg (over white). Throws UsageError for other names.
+/// Throws UsageError unless the name ends in .png, .jpg or .jpeg.
+void check_image_name(const std::filesystem::path& name);
+
+/// The format is that of the name: PNG with alpha, JPEG over white.
 void write_image(const Image& image, const std::filesystem::path& name, OutputFile& file);
 
 }  // namespace cmap

@@ -31,8 +31,8 @@ double typical_spacing_m(const PointBlocks& points);
 PixelMap splat(const PointBlocks& points, const Projection& projection, const SplatOptions& options);
 
 /// Shading by depth alone, after eye-dome lighting (Boucheny 2009): one factor in (0,1] for every pixel, darker the
-/// farther it lies behind the middle of opposite neighbors, so that planes stay plain at any angle and edges and hollows
-/// stand out; 1 where nothing is. `strength` 0 leaves all at 1.
+/// farther it lies behind the middle of opposite neighbors, so that planes stay plain at any angle and edges and
+/// hollows stand out; 1 where nothing is. `strength` 0 leaves all at 1.
 Array<float> eye_dome_shading(const PixelMap& pixels, const Projection& projection, double strength);
 
 }  // namespace cmap
