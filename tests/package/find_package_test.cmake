@@ -33,6 +33,7 @@ endforeach()
 
 # Every public header is installed and compiles in the consumer.
 file(GLOB_RECURSE headers RELATIVE ${CMAP_SOURCE_DIR}/include ${CMAP_SOURCE_DIR}/include/*.hpp)
+list(FILTER headers EXCLUDE REGEX "^cmap/render/")  # the module is not installed as a library
 set(includes "#include \"cmap/core/version.hpp\"\n")
 foreach(header IN LISTS headers)
   string(APPEND includes "#include \"${header}\"\n")
@@ -63,3 +64,12 @@ run(${prefix}/bin/cmap_eval ${identical}/reference.ply ${identical}/estimate.ply
   --config ${prefix}/share/cmap/configs/indoor.json)
 expect_output("LCR +↑ +100.00 %")
 message(STATUS "installed, found, linked and run")
+
+# The installed program finds its module for figures, where that was built.
+file(GLOB_RECURSE figure_module ${prefix}/libcmap_figure.so)
+if(figure_module)
+  run(${prefix}/bin/cmap_eval ${identical}/reference.ply ${identical}/estimate.ply --figure ${work}/figure.png)
+  if(NOT EXISTS ${work}/figure.png)
+    message(FATAL_ERROR "no figure")
+  endif()
+endif()
