@@ -57,27 +57,31 @@ Rgba8 ink_on(Background background) {
 /// The points of a map as one camera sees them; serves every layer of that map.
 struct Sight {
   PixelMap pixels;
-  Array<float> heat_shading, color_shading;
+  Array<float> shading_of_colors, shading_of_heat_maps;  ///< made when needed
 };
 
-Sight look_at(const PointBlocks& points, const Projection& projection, double point_size) {
-  constexpr double kCloseGaps = 2.0;             // of the spacing, so that random samples of a surface look closed
-  constexpr double kStrong = 0.6, kWeak = 0.35;  // heat maps must stay readable
+PixelMap look_at(const PointBlocks& points, const Projection& projection, double point_size) {
+  constexpr double kCloseGaps = 2.0;  // of the spacing, so that random samples of a surface look closed
   constexpr double kLonePoint_px = 7.0;
-  SplatOptions options;
   const double spacing_m = typical_spacing_m(points);
+  SplatOptions options;
   options.point_size_m = point_size * kCloseGaps * spacing_m;
   options.min_size_px = spacing_m > 0.0 ? kSamples : kSamples * kLonePoint_px;
-  Sight sight{splat(points, projection, options), {}, {}};
-  sight.heat_shading = eye_dome_shading(sight.pixels, projection, kWeak);
-  sight.color_shading = eye_dome_shading(sight.pixels, projection, kStrong);
-  return sight;
+  return splat(points, projection, options);
+}
+
+const Array<float>& shading_for(const Layer& layer, const Projection& projection, Sight& sight) {
+  constexpr double kStrong = 0.6, kWeak = 0.35;  // heat maps must stay readable
+  Array<float>& shading = layer.is_heat_map() ? sight.shading_of_heat_maps : sight.shading_of_colors;
+  if (shading.empty()) {
+    shading = eye_dome_shading(sight.pixels, projection, layer.is_heat_map() ? kWeak : kStrong);
+  }
+  return shading;
 }
 
 /// Colors, shades and averages the samples of every pixel.
-void paint(Image& image, const Rect& place, const Layer& layer, const Sight& sight) {
-  const Array<float>& shading = layer.is_heat_map() ? sight.heat_shading : sight.color_shading;
-  const auto samples_wide = static_cast<std::size_t>(sight.pixels.width);
+void paint(Image& image, const Rect& place, const Layer& layer, const PixelMap& pixels, const Array<float>& shading) {
+  const auto samples_wide = static_cast<std::size_t>(pixels.width);
   parallel_chunks(static_cast<std::size_t>(place.height), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y) {
       for (std::size_t x = 0; x < static_cast<std::size_t>(place.width); ++x) {
@@ -85,8 +89,8 @@ void paint(Image& image, const Rect& place, const Layer& layer, const Sight& sig
         int covered = 0;
         for (std::size_t s = 0; s < kSamples * kSamples; ++s) {
           const std::size_t cell = (y * kSamples + s / kSamples) * samples_wide + x * kSamples + s % kSamples;
-          if (sight.pixels.is_empty(cell)) continue;
-          const Rgb8& color = layer.colors[sight.pixels.slot(cell)];
+          if (pixels.is_empty(cell)) continue;
+          const Rgb8& color = layer.colors[pixels.slot(cell)];
           for (std::size_t c = 0; c < 3; ++c) sum[c] += shading[cell] * static_cast<float>(color[c]);
           ++covered;
         }
@@ -195,11 +199,10 @@ Image draw_figure(std::span<const Layer> layers, const Camera& camera, const Fig
   for (std::size_t i = 0; i < layers.size(); ++i) {
     const Layer& layer = layers[i];
     const Rect place = picture_of(i, layers.size(), options);
-    auto sight = sights.find(layer.points);
-    if (sight == sights.end()) {
-      sight = sights.emplace(layer.points, look_at(*layer.points, projection, options.point_size)).first;
-    }
-    paint(image, place, layer, sight->second);
+    const auto [place_of_sight, is_new] = sights.try_emplace(layer.points);
+    Sight& sight = place_of_sight->second;
+    if (is_new) sight.pixels = look_at(*layer.points, projection, options.point_size);
+    paint(image, place, layer, sight.pixels, shading_for(layer, projection, sight));
     draw_text(image, place.x, place.y - kTitleHeight / 2, layer.title, kTextSize, ink);
     draw_text(image, place.x + place.width, place.y - kTitleHeight / 2, layer.caption, kTextSize, ink,
               TextAnchor::kRight);

@@ -34,10 +34,7 @@ vtkNew<vtkImageData> to_vtk(const Image& image, int channels) {
   result->AllocateScalars(VTK_UNSIGNED_CHAR, channels);
   for (int y = 0; y < image.height; ++y) {
     auto* out = static_cast<std::uint8_t*>(result->GetScalarPointer(0, image.height - 1 - y, 0));
-    const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width);
-    for (int x = 0; x < image.width; ++x, out += channels) {
-      std::copy_n(image.pixels[row + static_cast<std::size_t>(x)].data(), channels, out);
-    }
+    for (int x = 0; x < image.width; ++x, out += channels) std::copy_n(image.at(x, y).data(), channels, out);
   }
   return result;
 }
@@ -66,7 +63,7 @@ void write_image(const Image& image, const std::filesystem::path& name, OutputFi
     constexpr int kQuality = 92;
     Image opaque(image.width, image.height, {255, 255, 255, 255});
     for (int y = 0; y < image.height; ++y) {
-      for (int x = 0; x < image.width; ++x) blend(opaque, x, y, const_cast<Image&>(image).at(x, y));
+      for (int x = 0; x < image.width; ++x) blend(opaque, x, y, image.at(x, y));
     }
     vtkNew<vtkJPEGWriter> writer;
     writer->SetQuality(kQuality);

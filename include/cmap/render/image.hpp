@@ -18,8 +18,12 @@ struct Image {
   int width, height;
   Array<Rgba8> pixels;
 
-  Rgba8& at(int x, int y) {
-    return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+  Rgba8& at(int x, int y) { return pixels[index(x, y)]; }
+  const Rgba8& at(int x, int y) const { return pixels[index(x, y)]; }
+
+ private:
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
   }
 };
 
