@@ -25,9 +25,9 @@ struct ColorSums {
   }
 };
 
-}  // namespace
-
-ColorConsistency color_consistency(const IndexedMap& map, double voxel_m, std::uint64_t min_points) {
+/// result_of(index, trace) for every voxel with at least min_points points.
+template <class ResultOf>
+auto collect_spreads(const IndexedMap& map, double voxel_m, std::uint64_t min_points, ResultOf&& result_of) {
   if (!map.has_color()) throw std::invalid_argument("color_consistency: the map needs colors");
   const VoxelFrame frame(map.index.bounds(), voxel_m);
   const auto add = [&](ColorSums& sums, std::size_t slot, const Eigen::Vector3d&, const VoxelKey&) {
@@ -36,12 +36,26 @@ ColorConsistency color_consistency(const IndexedMap& map, double voxel_m, std::u
     sums.sum += color;
     sums.sum_sq += color.squaredNorm();
   };
-  const auto trace = [&](const VoxelKey&, const ColorSums& sums) -> std::optional<double> {
-    if (sums.n < min_points) return std::nullopt;
-    return sums.covariance_trace();
-  };
-  const auto voxels = collect_voxels<ColorSums>(map.index.points, frame, add, trace);
+  using Result = std::invoke_result_t<ResultOf, const std::array<std::int64_t, 3>&, double>;
+  return collect_voxels<ColorSums>(map.index.points, frame, add,
+                                   [&](const VoxelKey& key, const ColorSums& sums) -> std::optional<Result> {
+                                     if (sums.n < min_points) return std::nullopt;
+                                     return result_of(frame.index(key), sums.covariance_trace());
+                                   });
+}
 
+}  // namespace
+
+std::vector<VoxelColorSpread> voxel_color_spreads(const IndexedMap& map, double voxel_m, std::uint64_t min_points) {
+  return collect_spreads(map, voxel_m, min_points,
+                         [](const auto& index, double trace) {
+                           return VoxelColorSpread{index, trace};
+                         })
+      .results;
+}
+
+ColorConsistency color_consistency(const IndexedMap& map, double voxel_m, std::uint64_t min_points) {
+  const auto voxels = collect_spreads(map, voxel_m, min_points, [](const auto&, double trace) { return trace; });
   const std::vector<double>& traces = voxels.results;
   ColorConsistency consistency;
   consistency.n_voxels = traces.size();

@@ -9,6 +9,9 @@
 #include "cmap/core/color.hpp"
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
+#include "cmap/metrics/color_consistency.hpp"
+#include "cmap/metrics/wasserstein.hpp"
+#include "cmap/spatial/voxel_map.hpp"
 
 namespace cmap {
 namespace {
@@ -38,7 +41,10 @@ double round_up(double value) {
   return 10.0 * power;
 }
 
+/// Of the values that are there; 0 without any.
 double percentile(Array<float> values, double share) {
+  std::erase_if(values, [](float v) { return std::isnan(v); });
+  if (values.empty()) return 0.0;
   const auto rank = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), rank, values.end());
   return static_cast<double>(*rank);
@@ -75,6 +81,60 @@ Layer heat_map(const PointBlocks& points, std::string title, ColorMap map, std::
   layer.colors =
       painted(points.size, [&](std::size_t slot) { return color_of(static_cast<double>(values[slot]), *layer.scale); });
   return layer;
+}
+
+/// Values of voxels by their world index, painted onto the points in them; points elsewhere have no value.
+class VoxelValues {
+ public:
+  VoxelValues(const IndexedMap& map, double voxel_m) : frame_(map.index.bounds(), voxel_m), voxel_m_(voxel_m) {}
+
+  void set(const std::array<std::int64_t, 3>& index, double value) {
+    Eigen::Vector3d center;
+    for (int axis = 0; axis < 3; ++axis) {
+      center[axis] = (static_cast<double>(index[static_cast<std::size_t>(axis)]) + 0.5) * voxel_m_;
+    }
+    values_[frame_.key(center)] = value;
+  }
+
+  double at(const Eigen::Vector3d& world) const {
+    const double* value = values_.find(frame_.key(world));
+    return value == nullptr ? std::numeric_limits<double>::quiet_NaN() : *value;
+  }
+
+ private:
+  VoxelFrame frame_;
+  double voxel_m_;
+  VoxelMap<double> values_;
+};
+
+Layer voxel_layer(const IndexedMap& map, std::string title, ColorMap color_map, std::string unit,
+                  const LayerOptions& options, const VoxelValues& voxels) {
+  const PointBlocks& points = map.index.points;
+  return heat_map(points, std::move(title), color_map, std::move(unit), options,
+                  [&](std::size_t slot) { return voxels.at(points.world(slot)); });
+}
+
+Layer consistency_layer(const Evaluation& evaluation, const LayerOptions& options) {
+  const IndexedMap& map = evaluation.pair.estimate;
+  if (!map.has_color()) throw UnsupportedError("layer ccs: the estimate needs color");
+  const double voxel_m = evaluation.options.ccs_voxel_m;
+  VoxelValues voxels(map, voxel_m);
+  for (const auto& [index, trace] : voxel_color_spreads(map, voxel_m, evaluation.options.ccs_min_points)) {
+    voxels.set(index, trace);
+  }
+  return voxel_layer(map, fmt::format("Color spread in voxels of {} m", voxel_m), ColorMap::kInferno, "unit RGB²",
+                     options, voxels);
+}
+
+Layer wasserstein_layer(const Evaluation& evaluation, const LayerOptions& options) {
+  const double voxel_m = evaluation.options.awd_voxel_m;
+  VoxelValues voxels(evaluation.pair.estimate, voxel_m);
+  for (const auto& [index, distance_m] :
+       wasserstein_distances(gaussian_pairs(evaluation.pair, voxel_m, evaluation.options.awd_min_points))) {
+    voxels.set(index, distance_m);
+  }
+  return voxel_layer(evaluation.pair.estimate, fmt::format("Wasserstein distance in voxels of {} m", voxel_m),
+                     ColorMap::kViridis, "m", options, voxels);
 }
 
 Layer height_layer(const IndexedMap& map, std::string title, const LayerOptions& options) {
@@ -154,8 +214,8 @@ Layer error_layer(const Evaluation& evaluation, std::string_view name, const Lay
 }  // namespace
 
 const std::vector<std::string>& layer_names() {
-  static const std::vector<std::string> names{"reference", "estimate", "lcr",   "color-distance",
-                                              "distance",  "delta-e",  "height"};
+  static const std::vector<std::string> names{"reference", "estimate", "lcr",         "color-distance", "distance",
+                                              "delta-e",   "ccs",      "wasserstein", "height"};
   return names;
 }
 
@@ -166,6 +226,11 @@ Layer make_layer(const Evaluation& evaluation, std::string_view name, const Laye
   if (name == "reference") return make_layer(evaluation.pair.reference, "Reference", options);
   if (name == "estimate") return make_layer(evaluation.pair.estimate, "Estimate", options);
   if (name == "height") return height_layer(evaluation.pair.estimate, "Height", options);
+  if (name == "ccs" || name == "wasserstein") {
+    Layer layer = name == "ccs" ? consistency_layer(evaluation, options) : wasserstein_layer(evaluation, options);
+    layer.caption = caption_of(evaluation, name == "ccs" ? "color_consistency" : "average_wasserstein");
+    return layer;
+  }
   if (name == "lcr") {
     Layer layer = recall_layer(evaluation);
     layer.caption = caption_of(evaluation, "local_color_recall");

@@ -71,6 +71,26 @@ TEST(MakeLayer, HeatMapsShowTheirValues) {
   EXPECT_EQ(color_at_x(color, 10.0), color_table(ColorMap::kInferno)[200]);  // 200 / 255
 }
 
+TEST(MakeLayer, VoxelsPaintTheirPoints) {
+  EvaluationOptions options = test::options_for({"chamfer"});
+  options.ccs_voxel_m = 1.0;
+  options.awd_voxel_m = 1.0;
+  options.awd_min_points = 2;
+  // Two points in one voxel and one in another; the estimate lies 0.25 m higher.
+  const std::vector<Rgb8> colors{{0, 0, 0}, {255, 0, 0}, {9, 9, 9}};
+  const Evaluation evaluation =
+      evaluate(test::small_map({{0.25f, 0.5f, 0.25f}, {0.75f, 0.5f, 0.25f}, {5.5f, 0.5f, 0.25f}}, colors),
+               test::small_map({{0.25f, 0.5f, 0.5f}, {0.75f, 0.5f, 0.5f}, {5.5f, 0.5f, 0.5f}}, colors), options);
+  const Rgb8 none{160, 160, 160};
+  const Layer spread = make_layer(evaluation, "ccs", {{{0.0, 1.0}}, std::nullopt, false});
+  EXPECT_EQ(color_at_x(spread, 0.25), color_table(ColorMap::kInferno)[128]);  // variance of 0 and 1: 0.5
+  EXPECT_EQ(color_at_x(spread, 0.75), color_table(ColorMap::kInferno)[128]);
+  EXPECT_EQ(color_at_x(spread, 5.5), none);
+  const Layer distance = make_layer(evaluation, "wasserstein", {{{0.0, 0.5}}, std::nullopt, false});
+  EXPECT_EQ(color_at_x(distance, 0.75), color_table(ColorMap::kViridis)[128]);  // 0.25 m of 0.5 m
+  EXPECT_EQ(color_at_x(distance, 5.5), none);
+}
+
 TEST(MakeLayer, MapsKeepTheirColors) {
   const Evaluation evaluation = three_points();
   EXPECT_EQ(color_at_x(make_layer(evaluation, "reference"), 20.0), (Rgb8{0, 0, 200}));
@@ -80,7 +100,7 @@ TEST(MakeLayer, MapsKeepTheirColors) {
 TEST(MakeLayer, RefusesWhatTheDataCannotGive) {
   const Evaluation plain =
       evaluate(test::small_map({{0, 0, 0}}), test::small_map({{0, 0, 1}}), test::options_for({"chamfer"}));
-  for (const char* name : {"lcr", "color-distance", "delta-e"}) {
+  for (const char* name : {"lcr", "color-distance", "delta-e", "ccs"}) {
     EXPECT_THAT(test::refusal_of<UnsupportedError>([&] { make_layer(plain, name); }), HasSubstr(name));
   }
   EXPECT_THAT(test::refusal_of<UsageError>([&] { make_layer(plain, "colour"); }),

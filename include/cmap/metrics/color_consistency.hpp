@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <vector>
 
 #include "cmap/metrics/map_pair.hpp"
 
@@ -18,5 +20,14 @@ struct ColorConsistency {
 /// The map needs colors (std::invalid_argument); min_points is at least 2. Throws UsageError for voxels too small to
 /// be counted. Deterministic.
 ColorConsistency color_consistency(const IndexedMap& map, double voxel_m, std::uint64_t min_points);
+
+/// One voxel with at least min_points points: the trace of its colors' covariance.
+struct VoxelColorSpread {
+  std::array<std::int64_t, 3> index;  ///< floor(world / voxel_m)
+  double trace = 0.0;                 ///< unit RGB squared
+};
+
+/// What color_consistency averages, voxel by voxel; throws as it does. Deterministic.
+std::vector<VoxelColorSpread> voxel_color_spreads(const IndexedMap& map, double voxel_m, std::uint64_t min_points);
 
 }  // namespace cmap

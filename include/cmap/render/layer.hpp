@@ -53,7 +53,8 @@ struct LayerOptions {
   bool logarithmic = false;
 };
 
-/// Names: reference and estimate (their own colors), lcr, color-distance, distance, delta-e, height.
+/// Names: reference and estimate (their own colors), lcr, color-distance, distance, delta-e, ccs and
+/// wasserstein (by voxel), height.
 const std::vector<std::string>& layer_names();
 
 /// The layer of an evaluated pair; `lcr` is of the reference, all others but `reference` of the estimate. Throws
