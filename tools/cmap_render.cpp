@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <sstream>
+#include <variant>
 
 #include "cmap/core/parallel.hpp"
 #include "cmap/core/progress.hpp"
@@ -51,7 +52,8 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("--range", a.range, "ends of the color scale of heat maps, for pictures that are to be compared")
       ->type_name("LOW,HIGH")
       ->delimiter(',')
-      ->expected(2);
+      ->expected(2)
+      ->option_text("LOW,HIGH");
   app.add_flag("--log", a.logarithmic, "logarithmic color scale");
   app.add_option("--color-map", a.color_map, "viridis, cividis, inferno or turbo")->type_name("NAME");
   app.add_option("--background", a.background, "white, black or transparent [white]")->type_name("NAME");
@@ -90,25 +92,44 @@ cmap::LayerOptions layer_options(const Arguments& a) {
   return options;
 }
 
-cmap::Camera camera_of(const Arguments& a, const cmap::PointBlocks& points, std::size_t n_panels,
-                       const cmap::FigureOptions& options) {
+/// A camera from a file, or a view that is fitted to the map.
+using CameraChoice = std::variant<cmap::Camera, cmap::View>;
+
+CameraChoice camera_choice(const Arguments& a) {
   if (a.camera.ends_with(".json")) return cmap::read_camera(a.camera);
-  const cmap::View view = cmap::view_from_name(a.camera);
-  return cmap::camera_for(view, points, cmap::box_to_show(points), cmap::panel_aspect(n_panels, options),
-                          a.orthographic);
+  return cmap::view_from_name(a.camera);
 }
 
-void draw(const Arguments& a, std::span<const cmap::Layer> layers, const cmap::PointBlocks& points,
-          const cmap::FigureOptions& options, cmap::OutputFile& file) {
-  const cmap::Image image = cmap::draw_figure(layers, camera_of(a, points, layers.size(), options), options);
+cmap::Camera camera_of(const CameraChoice& choice, const Arguments& a, const cmap::PointBlocks& points,
+                       std::size_t n_panels, const cmap::FigureOptions& options) {
+  if (const auto* camera = std::get_if<cmap::Camera>(&choice)) return *camera;
+  return cmap::camera_for(std::get<cmap::View>(choice), points, cmap::box_to_show(points),
+                          cmap::panel_aspect(n_panels, options), a.orthographic);
+}
+
+/// What is drawn and how, checked before the work.
+struct Plan {
+  explicit Plan(const Arguments& a) : options(figure_options(a)), layer(layer_options(a)), camera(camera_choice(a)) {
+    (void)cmap::panel_aspect(std::max<std::size_t>(1, a.panels.size()), options);
+    cmap::check_image_name(a.output);
+  }
+  cmap::FigureOptions options;
+  cmap::LayerOptions layer;
+  CameraChoice camera;
+};
+
+void draw(const Arguments& a, std::span<const cmap::Layer> layers, const cmap::PointBlocks& points, const Plan& plan,
+          cmap::OutputFile& file) {
+  const cmap::Camera camera = camera_of(plan.camera, a, points, layers.size(), plan.options);
+  const cmap::Image image = cmap::draw_figure(layers, camera, plan.options);
   cmap::write_image(image, a.output, file);
 }
 
-void draw_map(const Arguments& a, const cmap::FigureOptions& options, cmap::OutputFile& file) {
+void draw_map(const Arguments& a, const Plan& plan, cmap::OutputFile& file) {
   if (!a.panels.empty() || !a.transform.empty()) throw cmap::UsageError("--panels and --transform need a second map");
   const cmap::IndexedMap map(cmap::read_point_cloud(a.map).cloud);
-  const std::vector<cmap::Layer> layers{cmap::make_layer(map, a.map, layer_options(a))};
-  draw(a, layers, map.index.points, options, file);
+  const std::vector<cmap::Layer> layers{cmap::make_layer(map, a.map, plan.layer)};
+  draw(a, layers, map.index.points, plan, file);
 }
 
 /// What the panels need of an evaluation; color only where both maps have it.
@@ -119,7 +140,7 @@ cmap::EvaluationOptions evaluation_options(bool has_color) {
   return options;
 }
 
-void draw_pair(const Arguments& a, const cmap::FigureOptions& options, cmap::OutputFile& file) {
+void draw_pair(const Arguments& a, const Plan& plan, cmap::OutputFile& file) {
   const Eigen::Matrix4d T_ref_est =
       a.transform.empty() ? Eigen::Matrix4d::Identity().eval() : cmap::read_transform(a.transform);
   cmap::ProgressBar progress(!a.quiet);
@@ -132,17 +153,15 @@ void draw_pair(const Arguments& a, const cmap::FigureOptions& options, cmap::Out
                      [&](std::string_view stage, double done) { progress.update(stage, done); });
   std::vector<cmap::Layer> layers;
   for (const std::string& panel : a.panels.empty() ? cmap::standard_panels(evaluation) : a.panels)
-    layers.push_back(cmap::make_layer(evaluation, panel, layer_options(a)));
-  draw(a, layers, evaluation.pair.reference.index.points, options, file);
+    layers.push_back(cmap::make_layer(evaluation, panel, plan.layer));
+  draw(a, layers, evaluation.pair.reference.index.points, plan, file);
 }
 
 cmap::ExitCode run(const Arguments& a) {
   const cmap::ThreadLimit limit(a.threads);
-  const cmap::FigureOptions options = figure_options(a);
-  (void)cmap::panel_aspect(std::max<std::size_t>(1, a.panels.size()), options);  // refuses sizes before the work
-  cmap::check_image_name(a.output);
+  const Plan plan(a);
   cmap::OutputFile file(a.output);
-  a.estimate.empty() ? draw_map(a, options, file) : draw_pair(a, options, file);
+  a.estimate.empty() ? draw_map(a, plan, file) : draw_pair(a, plan, file);
   file.commit();
   return cmap::ExitCode::kDone;
 }
