@@ -6,6 +6,7 @@
 
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
+#include "cmap/eval/metric_catalog.hpp"
 #include "cmap/spatial/voxel_map.hpp"
 
 namespace cmap {
@@ -25,12 +26,30 @@ void require_finite_points(const PointCloud& cloud, const char* which) {
   if (!finite) throw InputError(fmt::format("the {} has a point that is not finite", which));
 }
 
+/// Voxels too small to be counted are refused by the option's name, and before the work.
+void check_voxels(const char* option, double size_m, const Box3d& box) {
+  try {
+    const VoxelFrame countable(box, size_m);
+  } catch (const UsageError& error) {
+    throw UsageError(fmt::format("{}: {}", option, error.what()));
+  }
+}
+
+void check_voxels_of_metrics(const EvaluationOptions& options, const Box3d& box) {
+  const MetricSelection selection = select_metrics(options);
+  if (selection.contains("color_consistency")) check_voxels("ccs-voxel", options.ccs_voxel_m, box);
+  if (selection.contains("average_wasserstein")) check_voxels("awd-voxel", options.awd_voxel_m, box);
+}
+
 void crop_and_thin(PointCloud& cloud, const EvaluationOptions& options, const char* which) {
   if (options.crop) {
     cloud = crop(cloud, *options.crop);
     if (cloud.positions.empty()) throw UnsupportedError(fmt::format("crop: no point of the {} is inside", which));
   }
-  if (options.voxel_m) cloud = voxel_thinned(cloud, *options.voxel_m);
+  if (options.voxel_m) {
+    check_voxels("voxel", *options.voxel_m, bounds(cloud));
+    cloud = voxel_thinned(cloud, *options.voxel_m);
+  }
 }
 
 double gap_between(const Box3d& a, const Box3d& b) {
@@ -76,6 +95,7 @@ void prepare_clouds(PointCloud& reference, PointCloud& estimate, const Evaluatio
 
   const Box3d reference_box = bounds(reference);
   const Box3d estimate_box = bounds(estimate);
+  for (const Box3d& box : {reference_box, estimate_box}) check_voxels_of_metrics(options, box);
   warn_about_frames(reference_box, estimate_box, warnings);
   if (gap_between(reference_box, estimate_box) <= kFarApart_m) {
     const Eigen::Vector3d origin =
