@@ -2,23 +2,19 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
 #include <map>
 
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
+#include "render/legend.hpp"
 
 namespace cmap {
 namespace {
 
-constexpr int kSamples = 2;  // an axis and pixel
-constexpr int kTextSize = 18, kSmallTextSize = 14;
-constexpr int kMargin = 12, kTitleHeight = 32, kLegendHeight = 44;
+constexpr int kSamples = 2;       // an axis and pixel
+constexpr double kMargin = 12.0;  // in the pen's units
 constexpr int kSmallestPanel = 64;
-
-struct Rect {
-  int x, y, width, height;
-};
 
 struct Grid {
   int columns, rows;
@@ -29,13 +25,25 @@ Grid grid_for(std::size_t n) {
   return {columns, (static_cast<int>(n) + columns - 1) / columns};
 }
 
+Rgba8 ink_on(Background background) {
+  return background == Background::kBlack ? Rgba8{235, 235, 235, 255} : Rgba8{20, 20, 20, 255};
+}
+
+Pen pen_for(std::size_t n_layers, const FigureOptions& options) {
+  const Grid grid = grid_for(n_layers);
+  const double unit = std::min(options.width_px / (800.0 * grid.columns), options.height_px / (500.0 * grid.rows));
+  return {ink_on(options.background), std::clamp(unit, 0.5, 16.0)};
+}
+
 /// The picture of panel i; its title stands above and its legend below.
 Rect picture_of(std::size_t i, std::size_t n, const FigureOptions& options) {
   const Grid grid = grid_for(n);
-  const int width = (options.width_px - (grid.columns + 1) * kMargin) / grid.columns;
-  const int cell = (options.height_px - kMargin) / grid.rows;
+  const Pen pen = pen_for(n, options);
+  const int margin = pen.px(kMargin), title = pen.px(kTitleHeight);
+  const int width = (options.width_px - (grid.columns + 1) * margin) / grid.columns;
+  const int cell = (options.height_px - margin) / grid.rows;
   const int column = static_cast<int>(i) % grid.columns, row = static_cast<int>(i) / grid.columns;
-  return {kMargin + column * (width + kMargin), row * cell + kTitleHeight, width, cell - kTitleHeight - kLegendHeight};
+  return {margin + column * (width + margin), row * cell + title, width, cell - title - pen.px(kLegendHeight)};
 }
 
 Rgba8 background_color(Background background) {
@@ -48,10 +56,6 @@ Rgba8 background_color(Background background) {
       break;
   }
   return {255, 255, 255, 255};
-}
-
-Rgba8 ink_on(Background background) {
-  return background == Background::kBlack ? Rgba8{235, 235, 235, 255} : Rgba8{20, 20, 20, 255};
 }
 
 /// The points of a map as one camera sees them; serves every layer of that map.
@@ -105,65 +109,6 @@ void paint(Image& image, const Rect& place, const Layer& layer, const PixelMap& 
   });
 }
 
-/// 1, 2 or 5 times a power of ten, at most `value`.
-double round_down(double value) {
-  const double power = std::pow(10.0, std::floor(std::log10(value)));
-  return value >= 5.0 * power ? 5.0 * power : value >= 2.0 * power ? 2.0 * power : power;
-}
-
-std::string length_label(double meters) {
-  if (meters >= 1000.0) return fmt::format("{:g} km", meters / 1000.0);
-  if (meters >= 1.0) return fmt::format("{:g} m", meters);
-  if (meters >= 0.01) return fmt::format("{:g} cm", meters * 100.0);
-  return fmt::format("{:g} mm", meters * 1000.0);
-}
-
-/// A scale bar, exact at the depth of what the camera looks at.
-void draw_scale_bar(Image& image, const Rect& place, const Camera& camera, const Projection& projection, Rgba8 ink) {
-  const double depth = (camera.target - camera.position).norm();
-  const double meters_per_px = kSamples * projection.meters_per_pixel(depth);
-  const double length = round_down(0.22 * place.width * meters_per_px);
-  const int width = static_cast<int>(std::lround(length / meters_per_px));
-  const int y = place.y + place.height + 14;
-  fill(image, place.x, y, width, 2, ink);
-  fill(image, place.x, y - 4, 2, 10, ink);
-  fill(image, place.x + width - 2, y - 4, 2, 10, ink);
-  draw_text(image, place.x, y + 16, length_label(length), kSmallTextSize, ink);
-}
-
-double value_at(const ColorScale& scale, double share) {
-  if (!scale.logarithmic) return scale.low + share * (scale.high - scale.low);
-  return std::exp(std::log(scale.low) + share * (std::log(scale.high) - std::log(scale.low)));
-}
-
-void draw_color_bar(Image& image, const Rect& place, const ColorScale& scale, Rgba8 ink) {
-  const int width = static_cast<int>(0.45 * place.width), height = 14;
-  const int left = place.x + place.width - width - 70, top = place.y + place.height + 6;
-  for (int x = 0; x < width; ++x) {
-    const Rgb8 color = color_of(value_at(scale, (x + 0.5) / width), scale);
-    fill(image, left + x, top, 1, height, {color[0], color[1], color[2], 255});
-  }
-  for (double share : {0.0, 0.5, 1.0}) {
-    const int x = left + static_cast<int>(std::lround(share * (width - 1)));
-    fill(image, x, top + height, 1, 4, ink);
-    draw_text(image, x, top + height + 13, fmt::format("{:.3g}", value_at(scale, share)), kSmallTextSize, ink,
-              TextAnchor::kCenter);
-  }
-  draw_text(image, left + width + 8, top + height / 2, scale.unit, kSmallTextSize, ink);
-}
-
-void draw_classes(Image& image, const Rect& place, const std::vector<ColorClass>& classes, Rgba8 ink) {
-  constexpr int kSwatch = 14, kGap = 18;
-  const int y = place.y + place.height + 14;
-  int right = place.x + place.width;
-  for (auto item = classes.rbegin(); item != classes.rend(); ++item) {
-    draw_text(image, right, y, item->label, kSmallTextSize, ink, TextAnchor::kRight);
-    const int left = right - text_width(item->label, kSmallTextSize) - 6 - kSwatch;
-    fill(image, left, y - kSwatch / 2, kSwatch, kSwatch, {item->color[0], item->color[1], item->color[2], 255});
-    right = left - kGap;
-  }
-}
-
 void check_size(std::size_t n_layers, const FigureOptions& options) {
   const auto refuse = [&](const char* reason) {
     throw UsageError(fmt::format("a figure of {} x {} pixels {}", options.width_px, options.height_px, reason));
@@ -192,9 +137,11 @@ double panel_aspect(std::size_t n_layers, const FigureOptions& options) {
 Image draw_figure(std::span<const Layer> layers, const Camera& camera, const FigureOptions& options) {
   check_size(layers.size(), options);
   Image image(options.width_px, options.height_px, background_color(options.background));
-  const Rgba8 ink = ink_on(options.background);
+  const Pen pen = pen_for(layers.size(), options);
   const Rect first = picture_of(0, layers.size(), options);
   const Projection projection(camera, kSamples * first.width, kSamples * first.height);
+  // True at the depth of what the camera looks at.
+  const double meters_per_px = kSamples * projection.meters_per_pixel((camera.target - camera.position).norm());
   std::map<const PointBlocks*, Sight> sights;
   for (std::size_t i = 0; i < layers.size(); ++i) {
     const Layer& layer = layers[i];
@@ -203,12 +150,9 @@ Image draw_figure(std::span<const Layer> layers, const Camera& camera, const Fig
     Sight& sight = place_of_sight->second;
     if (is_new) sight.pixels = look_at(*layer.points, projection, options.point_size);
     paint(image, place, layer, sight.pixels, shading_for(layer, projection, sight));
-    draw_text(image, place.x, place.y - kTitleHeight / 2, layer.title, kTextSize, ink);
-    draw_text(image, place.x + place.width, place.y - kTitleHeight / 2, layer.caption, kTextSize, ink,
-              TextAnchor::kRight);
-    draw_scale_bar(image, place, camera, projection, ink);
-    if (layer.scale) draw_color_bar(image, place, *layer.scale, ink);
-    draw_classes(image, place, layer.classes, ink);
+    draw_title(image, place, layer, pen);
+    draw_legend(image, place, layer, pen);
+    draw_scale_bar(image, place, meters_per_px, pen);
   }
   return image;
 }
