@@ -30,6 +30,12 @@ foreach(pair "LZF_INCLUDE_DIR;liblzf-dev" "LZF_LIBRARY;liblzf-dev" "FLANN_INCLUD
   endif()
 endforeach()
 
+# PCL, a peer in the benchmarks, uses more of VTK than figures do: whoever comes first decides in which folder VTK's
+# targets live, and all of them must live here.
+if(CMAP_BUILD_BENCHMARKS)
+  find_package(PCL QUIET COMPONENTS kdtree io)
+endif()
+
 # Figures: optional.
 find_package(VTK 9.1 QUIET COMPONENTS CommonDataModel IOImage RenderingCore RenderingFreeType)
 find_path(CMAP_OPENCV_INCLUDE_DIR opencv2/imgproc.hpp PATH_SUFFIXES opencv4)

@@ -27,14 +27,15 @@ class ColorGroup {
   /// The best color distances of a block of queries, a lane each.
   Float16 search(std::size_t block) {
     best_ = colors_of_nearest(block);
-    update_active();
-    if (bits(active_) == 0) return best_;
+    active_ = less(broadcast(search_.stop_at), best_);
+    if (bits(active_) == 0) return best_;  // most groups: the nearest points have the right colors
     query_block_ = &queries_.queries.points.blocks.data()[block];
     q_ = load_queries(*query_block_, queries_.queries.shift.data());
     const ColorBlock& color = queries_.colors.data()[block];
     color_ = {load(color.r), load(color.g), load(color.b)};
     scan_around_nearest(block);
     if (bits(active_) == 0) return best_;
+    update_active();
     color_box_ = box_of(color_, active_);
     walk(tree_, box_of(q_, active_), *this);
     return best_;
