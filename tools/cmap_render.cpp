@@ -18,7 +18,7 @@ namespace {
 constexpr const char* kDescription =
     "Draws a point-cloud map, or an estimated map beside its reference with what is wrong with it.\n"
     "Needs no display and no GPU. Layers: reference, estimate, lcr, color-distance, distance, delta-e, ccs, "
-    "wasserstein,\n"
+    "wasserstein, density,\n"
     "height.";
 
 constexpr const char* kExample =

@@ -137,6 +137,17 @@ Layer wasserstein_layer(const Evaluation& evaluation, const LayerOptions& option
                      ColorMap::kViridis, "m", options, voxels);
 }
 
+Layer density_layer(const Evaluation& evaluation, const LayerOptions& options) {
+  const IndexedMap& map = evaluation.pair.estimate;
+  const PointBlocks& points = map.index.points;
+  const double voxel_m = evaluation.options.ccs_voxel_m;
+  const VoxelFrame frame(map.index.bounds(), voxel_m);
+  VoxelMap<std::uint32_t> counts;
+  for (std::size_t slot = 0; slot < points.size; ++slot) ++counts[frame.key(points.world(slot))];
+  return heat_map(points, fmt::format("Points in voxels of {} m", voxel_m), ColorMap::kViridis, "", options,
+                  [&](std::size_t slot) { return *counts.find(frame.key(points.world(slot))); });
+}
+
 Layer height_layer(const IndexedMap& map, std::string title, const LayerOptions& options) {
   const PointBlocks& points = map.index.points;
   Array<float> heights(points.size);
@@ -215,7 +226,7 @@ Layer error_layer(const Evaluation& evaluation, std::string_view name, const Lay
 
 const std::vector<std::string>& layer_names() {
   static const std::vector<std::string> names{"reference", "estimate", "lcr",         "color-distance", "distance",
-                                              "delta-e",   "ccs",      "wasserstein", "height"};
+                                              "delta-e",   "ccs",      "wasserstein", "density",        "height"};
   return names;
 }
 
@@ -226,6 +237,7 @@ Layer make_layer(const Evaluation& evaluation, std::string_view name, const Laye
   if (name == "reference") return make_layer(evaluation.pair.reference, "Reference", options);
   if (name == "estimate") return make_layer(evaluation.pair.estimate, "Estimate", options);
   if (name == "height") return height_layer(evaluation.pair.estimate, "Height", options);
+  if (name == "density") return density_layer(evaluation, options);
   if (name == "ccs" || name == "wasserstein") {
     Layer layer = name == "ccs" ? consistency_layer(evaluation, options) : wasserstein_layer(evaluation, options);
     layer.caption = caption_of(evaluation, name == "ccs" ? "color_consistency" : "average_wasserstein");

@@ -54,7 +54,7 @@ struct LayerOptions {
 };
 
 /// Names: reference and estimate (their own colors), lcr, color-distance, distance, delta-e, ccs and
-/// wasserstein (by voxel), height.
+/// wasserstein and density (by voxel), height.
 const std::vector<std::string>& layer_names();
 
 /// The layer of an evaluated pair; `lcr` is of the reference, all others but `reference` of the estimate. Throws
