@@ -10,8 +10,8 @@ function(cmap_set_compile_options target)
   endif()
 endfunction()
 
-# cmap_add_module(name SOURCES a.cpp ... [PUBLIC lib ...] [PRIVATE lib ...]) makes cmap::<name>.
-function(cmap_add_module name)
+# cmap_add_library(name SOURCES a.cpp ... [PUBLIC lib ...] [PRIVATE lib ...]) makes cmap::<name>, for our own programs.
+function(cmap_add_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   # Programs are called cmap_<name>; some share their name with a module.
   set(target cmap_lib_${name})
@@ -24,7 +24,12 @@ function(cmap_add_module name)
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} OUTPUT_NAME cmap_${name}
     POSITION_INDEPENDENT_CODE ON)
-  install(TARGETS ${target} EXPORT cmapTargets)
+endfunction()
+
+# The same for a module that is installed for others to use.
+function(cmap_add_module name)
+  cmap_add_library(${name} ${ARGN})
+  install(TARGETS cmap_lib_${name} EXPORT cmapTargets)
 endfunction()
 
 # cmap_add_tests(module name ...) makes one CTest test "<module>/<name>" of each <name>_test.cpp in this folder.

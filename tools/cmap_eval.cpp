@@ -9,18 +9,17 @@
 #include <cstring>
 #include <filesystem>
 #include <list>
-#include <map>
 #include <optional>
-#include <set>
 
 #include "cmap/core/parallel.hpp"
 #include "cmap/core/simd.hpp"
 #include "cmap/eval/point_errors.hpp"
 #include "cmap/eval/requirement.hpp"
 #include "cmap/io/output_file.hpp"
-#include "cmap/io/transform_file.hpp"
 #include "cmap/report/figure_module.hpp"
 #include "cmap/report/report.hpp"
+#include "evaluation_arguments.hpp"
+#include "files.hpp"
 #include "program.hpp"
 
 namespace {
@@ -44,41 +43,11 @@ struct Arguments {
   std::string output, figure, format = "table", config, preset, transform;
   std::string estimate_errors, reference_errors;
   std::vector<std::string> requirements;
-  std::map<std::string, std::string> option_texts;  ///< evaluation options by name
-  std::set<std::string> given;                      ///< names of those that were given
-  int threads = 0;
-  bool quiet = false;
+  cmap::EvaluationArguments evaluation;
+  cmap::CommonArguments common;
+
+  std::vector<std::string> outputs() const { return {output, figure, estimate_errors, reference_errors}; }
 };
-
-/// An option's default as one would type it; empty where it has none.
-std::string default_text(const cmap::OptionSpec& spec) {
-  const auto value = spec.get(cmap::EvaluationOptions{});
-  if (value.is_null() || value.empty()) return "";
-  if (value.is_string()) return value.get<std::string>();
-  if (!value.is_array()) return value.dump();
-  std::string text;
-  for (const auto& item : value)
-    text += (text.empty() ? "" : ",") + (item.is_string() ? item.get<std::string>() : item.dump());
-  return text;
-}
-
-void add_evaluation_options(CLI::App& app, Arguments& arguments) {
-  for (const cmap::OptionSpec& spec : cmap::evaluation_option_specs()) {
-    std::string& text = arguments.option_texts[spec.name];
-    const std::string flag = std::string("--") + spec.name;
-    if (spec.kind == cmap::OptionKind::kFlag) {
-      app.add_flag_callback(
-             flag, [&text] { text = "true"; }, spec.help)
-          ->group("Metrics");
-      continue;
-    }
-    std::string help = spec.help;
-    if (const std::string text_of_default = default_text(spec); !text_of_default.empty()) {
-      help += fmt::format(" [{}]", text_of_default);
-    }
-    app.add_option(flag, text, help)->type_name(spec.placeholder)->group("Metrics");
-  }
-}
 
 void add_options(CLI::App& app, Arguments& a) {
   app.add_option("REF", a.reference, "reference map")->required()->type_name("FILE");
@@ -103,42 +72,18 @@ void add_options(CLI::App& app, Arguments& a) {
       ->type_name("FILE.ply");
   app.add_option("--export-reference-errors", a.reference_errors, "the same for the reference, with LCR hits")
       ->type_name("FILE.ply");
-  app.add_option("--threads", a.threads, "threads to use [all]")
-      ->type_name("N")
-      ->check(CLI::Range(1, 4096).description(""));
-  app.add_flag("--quiet", a.quiet, "no table, no progress");
-  // An unset variable of a script must not silently mean the default.
-  const CLI::Validator not_empty([](std::string& text) { return text.empty() ? std::string("is empty") : ""; }, "");
-  for (const char* name : {"--output", "--figure", "--config", "--preset", "--transform", "--export-errors",
-                           "--export-reference-errors"}) {
-    app.get_option(name)->check(not_empty);
-  }
-  add_evaluation_options(app, a);
+  cmap::add_common_options(app, a.common, "no table, no progress");
+  cmap::refuse_empty(app, {"--output", "--figure", "--config", "--preset", "--transform", "--export-errors",
+                           "--export-reference-errors"});
+  a.evaluation.add_to(app, [](std::string_view) { return true; });
 }
 
 cmap::EvaluationOptions resolve_options(const Arguments& arguments) {
   cmap::EvaluationOptions options;
   if (!arguments.preset.empty()) cmap::apply_preset(options, arguments.preset);
   if (!arguments.config.empty()) cmap::apply_config_file(options, arguments.config);
-  for (const cmap::OptionSpec& spec : cmap::evaluation_option_specs()) {
-    if (!arguments.given.contains(spec.name)) continue;
-    const std::string& text = arguments.option_texts.at(spec.name);
-    try {
-      cmap::set_option(options, spec, text);
-    } catch (const cmap::UsageError& error) {
-      throw cmap::UsageError(fmt::format("--{}", error.what()));
-    }
-  }
+  arguments.evaluation.apply_to(options);
   return options;
-}
-
-/// Reads both maps, one on each thread.
-std::pair<cmap::PointCloudFile, cmap::PointCloudFile> read_both(const Arguments& arguments) {
-  std::pair<cmap::PointCloudFile, cmap::PointCloudFile> files;
-  const cmap::ReadOptions with_hash{.sha256 = true};
-  cmap::parallel_tasks({[&] { files.first = cmap::read_point_cloud(arguments.reference, with_hash); },
-                        [&] { files.second = cmap::read_point_cloud(arguments.estimate, with_hash); }});
-  return files;
 }
 
 bool check_requirements(const std::vector<cmap::Requirement>& requirements, const cmap::Evaluation& evaluation) {
@@ -157,7 +102,7 @@ namespace fs = std::filesystem;
 
 /// Outputs that cannot be written, or not in their format, are refused before the work.
 void check_outputs(const Arguments& a) {
-  for (const std::string& output : {a.output, a.figure, a.estimate_errors, a.reference_errors}) {
+  for (const std::string& output : a.outputs()) {
     if (!output.empty()) cmap::require_writable(output);
   }
   for (const std::string& ply : {a.estimate_errors, a.reference_errors}) {
@@ -165,23 +110,6 @@ void check_outputs(const Arguments& a) {
     if (!extension.empty() && extension != ".ply" && extension != ".PLY") {
       throw cmap::UsageError(fmt::format("{}: point errors are written as PLY; give it a name that ends in .ply", ply));
     }
-  }
-}
-
-/// Inputs are never modified: an output must not be one of them, under whatever name, nor another output.
-void refuse_overwriting(const Arguments& a) {
-  std::vector<std::string> taken{a.reference, a.estimate, a.config, a.transform};
-  for (const std::string& output : {a.output, a.figure, a.estimate_errors, a.reference_errors}) {
-    if (output.empty()) continue;
-    for (const std::string& other : taken) {
-      std::error_code missing;
-      const bool is_device = fs::exists(output, missing) && !fs::is_regular_file(output, missing);
-      if (other.empty() || is_device) continue;
-      if (fs::weakly_canonical(output) == fs::weakly_canonical(other) || fs::equivalent(output, other, missing)) {
-        throw cmap::UsageError(fmt::format("{}: would overwrite {}", output, other));
-      }
-    }
-    taken.push_back(output);
   }
 }
 
@@ -204,7 +132,7 @@ void deliver(const Arguments& arguments, const cmap::Evaluation& evaluation, con
   write(arguments.reference_errors, [&](cmap::OutputFile& file) { cmap::write_reference_errors(evaluation, file); });
   write(arguments.figure, [&](cmap::OutputFile& file) { figures->write(evaluation, arguments.figure, file); });
   write(arguments.output, [&](cmap::OutputFile& file) { file.write(report_text); });
-  if (!arguments.quiet) print(printed);
+  if (!arguments.common.quiet) print(printed);
   for (cmap::OutputFile& file : files) file.commit();
 }
 
@@ -225,27 +153,28 @@ std::string as_typed(const char* const* argv, int argc) {
 ExitCode run(const Arguments& arguments, const std::string& command) {
   const auto start = std::chrono::steady_clock::now();
   const auto started = fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now()));
-  const cmap::ThreadLimit limit(arguments.threads);
+  const cmap::ThreadLimit limit(arguments.common.threads);
   cmap::RunDescription run{command,
                            fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", started),
                            0.0,
                            {},
                            cmap::thread_count(),
                            std::string(cmap::simd_level_name(cmap::simd_level()))};
-  refuse_overwriting(arguments);
+  cmap::refuse_overwriting({arguments.reference, arguments.estimate, arguments.config, arguments.transform},
+                           arguments.outputs());
   check_outputs(arguments);
   std::optional<cmap::FigureModule> figures;
   if (!arguments.figure.empty()) figures.emplace().check_name(arguments.figure);
   const cmap::EvaluationOptions options = resolve_options(arguments);
   std::vector<cmap::Requirement> requirements;
   for (const std::string& text : arguments.requirements) requirements.push_back(cmap::parse_requirement(text, options));
-  const Eigen::Matrix4d T_ref_est =
-      arguments.transform.empty() ? Eigen::Matrix4d::Identity().eval() : cmap::read_transform(arguments.transform);
+  const Eigen::Matrix4d T_ref_est = cmap::transform_or_identity(arguments.transform);
 
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-  cmap::ProgressBar progress(!arguments.quiet);
+  cmap::ProgressBar progress(!arguments.common.quiet);
   progress.update("read", 0.0);
-  auto [reference, estimate] = read_both(arguments);
+  auto [reference, estimate] =
+      cmap::read_both(arguments.reference, arguments.estimate, cmap::ReadOptions{.sha256 = true});
   run.stage_seconds.emplace_back("read", seconds());
   const cmap::InputDescription reference_description = describe(reference);
   const cmap::InputDescription estimate_description = describe(estimate);
@@ -270,10 +199,5 @@ int main(int argc, char** argv) {
   app.footer(kExample);
   Arguments arguments;
   add_options(app, arguments);
-  return cmap::run_program(app, argc, argv, [&] {
-    for (auto& [name, text] : arguments.option_texts) {
-      if (app.count("--" + name) > 0) arguments.given.insert(name);
-    }
-    return run(arguments, as_typed(argv, argc));
-  });
+  return cmap::run_program(app, argc, argv, [&] { return run(arguments, as_typed(argv, argc)); });
 }

@@ -7,10 +7,10 @@
 
 #include "cmap/core/parallel.hpp"
 #include "cmap/core/progress.hpp"
-#include "cmap/io/point_cloud_file.hpp"
-#include "cmap/io/transform_file.hpp"
 #include "cmap/render/figure.hpp"
 #include "cmap/render/standard_figure.hpp"
+#include "evaluation_arguments.hpp"
+#include "files.hpp"
 #include "program.hpp"
 
 namespace {
@@ -34,8 +34,9 @@ struct Arguments {
   std::vector<std::string> panels;
   std::vector<double> range;
   double point_size = 1.0;
-  int threads = 0;
-  bool orthographic = false, logarithmic = false, quiet = false;
+  bool orthographic = false, logarithmic = false;
+  cmap::EvaluationArguments evaluation;
+  cmap::CommonArguments common;
 };
 
 void add_options(CLI::App& app, Arguments& a) {
@@ -62,10 +63,11 @@ void add_options(CLI::App& app, Arguments& a) {
       ->check(CLI::Range(0.01, 100.0).description(""));
   app.add_option("--transform", a.transform, "4x4 matrix T_ref_est that moves the estimate into the reference frame")
       ->type_name("FILE");
-  app.add_option("--threads", a.threads, "threads to use [all]")
-      ->type_name("N")
-      ->check(CLI::Range(1, 4096).description(""));
-  app.add_flag("--quiet", a.quiet, "no progress");
+  cmap::add_common_options(app, a.common, "no progress");
+  cmap::refuse_empty(app, {"--output", "--camera", "--color-map", "--transform"});
+  a.evaluation.add_to(app, [](std::string_view name) {
+    return name.starts_with("lcr-") ? name != "lcr-curve" : name.starts_with("ccs-") || name.starts_with("awd-");
+  });
 }
 
 cmap::FigureOptions figure_options(const Arguments& a) {
@@ -103,19 +105,22 @@ CameraChoice camera_choice(const Arguments& a) {
 cmap::Camera camera_of(const CameraChoice& choice, const Arguments& a, const cmap::PointBlocks& points,
                        std::size_t n_panels, const cmap::FigureOptions& options) {
   if (const auto* camera = std::get_if<cmap::Camera>(&choice)) return *camera;
-  return cmap::camera_for(std::get<cmap::View>(choice), points, cmap::box_to_show(points),
-                          cmap::panel_aspect(n_panels, options), a.orthographic);
+  return cmap::camera_for(std::get<cmap::View>(choice), points, cmap::panel_aspect(n_panels, options), a.orthographic);
 }
 
 /// What is drawn and how, checked before the work.
 struct Plan {
   explicit Plan(const Arguments& a) : options(figure_options(a)), layer(layer_options(a)), camera(camera_choice(a)) {
-    (void)cmap::panel_aspect(std::max<std::size_t>(1, a.panels.size()), options);
+    cmap::refuse_overwriting({a.map, a.estimate, a.camera, a.transform}, {a.output});
     cmap::check_image_name(a.output);
+    a.evaluation.apply_to(evaluation);
+    for (const std::string& panel : a.panels) cmap::check_layer_name(panel);
+    (void)cmap::panel_aspect(std::max<std::size_t>(1, a.panels.size()), options);
   }
   cmap::FigureOptions options;
   cmap::LayerOptions layer;
   CameraChoice camera;
+  cmap::EvaluationOptions evaluation;
 };
 
 void draw(const Arguments& a, std::span<const cmap::Layer> layers, const cmap::PointBlocks& points, const Plan& plan,
@@ -132,24 +137,26 @@ void draw_map(const Arguments& a, const Plan& plan, cmap::OutputFile& file) {
   draw(a, layers, map.index.points, plan, file);
 }
 
-/// What the panels need of an evaluation; color only where both maps have it.
-cmap::EvaluationOptions evaluation_options(bool has_color) {
-  cmap::EvaluationOptions options;
+/// What the panels and their captions need of an evaluation; color only where both maps have it.
+cmap::EvaluationOptions evaluation_options(const Arguments& a, const Plan& plan, bool has_color) {
+  cmap::EvaluationOptions options = plan.evaluation;
   options.metrics = {"chamfer"};
   if (has_color) options.metrics = {"chamfer", "color_distance", "local_color_recall"};
+  for (const std::string& panel : a.panels) {
+    const cmap::MetricInfo* metric = cmap::find_metric(cmap::metric_of_layer(panel));
+    if (metric != nullptr && (has_color || !metric->needs_color)) options.metrics.emplace_back(metric->id);
+  }
   return options;
 }
 
 void draw_pair(const Arguments& a, const Plan& plan, cmap::OutputFile& file) {
-  const Eigen::Matrix4d T_ref_est =
-      a.transform.empty() ? Eigen::Matrix4d::Identity().eval() : cmap::read_transform(a.transform);
-  cmap::ProgressBar progress(!a.quiet);
+  const Eigen::Matrix4d T_ref_est = cmap::transform_or_identity(a.transform);
+  cmap::ProgressBar progress(!a.common.quiet);
   progress.update("read", 0.0);
-  cmap::PointCloud reference = cmap::read_point_cloud(a.map).cloud;
-  cmap::PointCloud estimate = cmap::read_point_cloud(a.estimate).cloud;
-  const bool has_color = reference.has_color() && estimate.has_color();
+  auto [reference, estimate] = cmap::read_both(a.map, a.estimate);
+  const bool has_color = reference.cloud.has_color() && estimate.cloud.has_color();
   const cmap::Evaluation evaluation =
-      cmap::evaluate(std::move(reference), std::move(estimate), evaluation_options(has_color), T_ref_est,
+      cmap::evaluate(std::move(reference.cloud), std::move(estimate.cloud), evaluation_options(a, plan, has_color), T_ref_est,
                      [&](std::string_view stage, double done) { progress.update(stage, done); });
   std::vector<cmap::Layer> layers;
   for (const std::string& panel : a.panels.empty() ? cmap::standard_panels(evaluation) : a.panels)
@@ -158,7 +165,7 @@ void draw_pair(const Arguments& a, const Plan& plan, cmap::OutputFile& file) {
 }
 
 cmap::ExitCode run(const Arguments& a) {
-  const cmap::ThreadLimit limit(a.threads);
+  const cmap::ThreadLimit limit(a.common.threads);
   const Plan plan(a);
   cmap::OutputFile file(a.output);
   a.estimate.empty() ? draw_map(a, plan, file) : draw_pair(a, plan, file);

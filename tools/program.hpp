@@ -1,6 +1,6 @@
 #pragma once
 
-// What all programs share: how they end.
+// What all programs share: common options and how they end.
 
 #include <fmt/format.h>
 
@@ -11,6 +11,24 @@
 #include "cmap/core/version.hpp"
 
 namespace cmap {
+
+struct CommonArguments {
+  int threads = 0;  ///< 0: all
+  bool quiet = false;
+};
+
+inline void add_common_options(CLI::App& app, CommonArguments& arguments, const char* what_quiet_leaves_out) {
+  app.add_option("--threads", arguments.threads, "threads to use [all]")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4096).description(""));
+  app.add_flag("--quiet", arguments.quiet, what_quiet_leaves_out);
+}
+
+/// An unset variable of a script must not silently mean the default.
+inline void refuse_empty(CLI::App& app, std::initializer_list<const char*> options) {
+  const CLI::Validator not_empty([](std::string& text) { return text.empty() ? std::string("is empty") : ""; }, "");
+  for (const char* name : options) app.get_option(name)->check(not_empty);
+}
 
 /// Parses the command line, calls run(), and turns what it throws into a message on stderr and an exit code.
 template <class Run>

@@ -1,5 +1,6 @@
 #include "cmap/core/color.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -56,6 +57,11 @@ RgbF rgb_255(const Colors& colors, std::size_t i) {
     return {(*c)[i][0] * 255.0f, (*c)[i][1] * 255.0f, (*c)[i][2] * 255.0f};
   }
   throw std::invalid_argument("rgb_255: the cloud has no colors");
+}
+
+Rgb8 to_rgb8(const Eigen::Vector3f& rgb_255) {
+  const auto byte = [](float v) { return static_cast<std::uint8_t>(std::lround(std::clamp(v, 0.0f, 255.0f))); };
+  return {byte(rgb_255.x()), byte(rgb_255.y()), byte(rgb_255.z())};
 }
 
 Eigen::Vector3d srgb_to_lab(const Eigen::Vector3d& rgb) {

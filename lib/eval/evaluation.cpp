@@ -91,7 +91,7 @@ Evaluation evaluate(PointCloud reference, PointCloud estimate, const EvaluationO
   StageClock clock(stage_seconds, progress);
 
   check_color(reference, estimate, selection, warnings);
-  clock.run("prepare", 0.15, [&] { prepare_clouds(reference, estimate, options, T_ref_est, warnings); });
+  clock.run("prepare", 0.15, [&] { prepare_clouds(reference, estimate, options, selection, T_ref_est, warnings); });
   Evaluation result{
       options, T_ref_est, 0.0, 0.0, {}, {}, {}, {}, index_and_pair(reference, estimate, options.index, clock), {}};
 
@@ -110,15 +110,14 @@ Evaluation evaluate(PointCloud reference, PointCloud estimate, const EvaluationO
   });
   append(result.metrics, geometry_records(findings));
 
-  const bool as_mapeval = std::ranges::count(options.as, "mapeval") > 0;
   clock.run("distribution", 0.85, [&] {
-    if (as_mapeval || selection.contains("average_wasserstein") || selection.contains("spatial_consistency")) {
+    if (selection.needs_gaussians) {
       findings.gaussians = gaussian_pairs(result.pair, options.awd_voxel_m, options.awd_min_points);
     }
     append(result.metrics, distribution_records(findings, warnings));
   });
   clock.run("entropy", 0.9, [&] {
-    if (as_mapeval || selection.contains("mean_map_entropy")) {
+    if (selection.needs_neighborhoods) {
       findings.neighborhoods = Neighborhoods{neighborhood_shapes(result.pair.reference.index, options.mme_radius_m),
                                              neighborhood_shapes(result.pair.estimate.index, options.mme_radius_m)};
     }

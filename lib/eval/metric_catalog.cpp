@@ -79,6 +79,10 @@ MetricSelection select_metrics(const EvaluationOptions& options) {
                       name, fmt::join(ids, ", ")));
     }
   }
+  const bool as_mapeval = std::ranges::count(options.as, "mapeval") > 0;
+  selection.needs_gaussians =
+      as_mapeval || selection.contains("average_wasserstein") || selection.contains("spatial_consistency");
+  selection.needs_neighborhoods = as_mapeval || selection.contains("mean_map_entropy");
   return selection;
 }
 

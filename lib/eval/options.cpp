@@ -5,14 +5,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
-#include <set>
-#include <sstream>
 
 #include "cmap/core/error.hpp"
 #include "cmap/eval/metric_catalog.hpp"
+#include "cmap/io/json_text.hpp"
 #include "eval/presets.hpp"
 
 namespace cmap {
@@ -165,6 +162,15 @@ Json value_from_text(const OptionSpec& spec, const std::string& text) {
   return nullptr;
 }
 
+void apply(EvaluationOptions& options, const Json& config) {
+  if (!config.is_object()) throw UsageError("expected a JSON object of options");
+  for (const auto& [key, value] : config.items()) {
+    const auto spec = std::ranges::find_if(evaluation_option_specs(), [&](const auto& s) { return key == s.name; });
+    if (spec == evaluation_option_specs().end()) throw UsageError(fmt::format("unknown key \"{}\"", key));
+    spec->set(options, value);
+  }
+}
+
 }  // namespace
 
 // One line for each option: name, kind, placeholder, help, setter, getter.
@@ -228,36 +234,11 @@ void set_option(EvaluationOptions& options, const OptionSpec& spec, const std::s
 }
 
 void apply_config(EvaluationOptions& options, const std::string& json_text, const std::string& source) {
-  try {
-    std::set<std::string> keys;
-    const auto refuse_repetition = [&](int depth, Json::parse_event_t event, Json& parsed) {
-      if (event == Json::parse_event_t::key && depth == 1 && !keys.insert(parsed.get<std::string>()).second) {
-        throw UsageError(fmt::format("key \"{}\" is given twice", parsed.get<std::string>()));
-      }
-      return true;
-    };
-    const Json config = Json::parse(json_text, refuse_repetition, true, /*ignore_comments=*/true);
-    if (!config.is_object()) throw UsageError("expected a JSON object of options");
-    for (const auto& [key, value] : config.items()) {
-      const auto spec = std::ranges::find_if(evaluation_option_specs(), [&](const auto& s) { return key == s.name; });
-      if (spec == evaluation_option_specs().end()) throw UsageError(fmt::format("unknown key \"{}\"", key));
-      spec->set(options, value);
-    }
-  } catch (const Json::exception& error) {
-    const std::string_view message = error.what();  // "[json.exception...] parse error at line 1, column 2: ..."
-    throw UsageError(fmt::format("{}: {}", source, message.substr(message.find(']') + 2)));
-  } catch (const UsageError& error) {
-    throw UsageError(fmt::format("{}: {}", source, error.what()));
-  }
+  read_json(json_text, source, [&](const Json& config) { apply(options, config); });
 }
 
 void apply_config_file(EvaluationOptions& options, const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path)) {
-    throw UsageError(fmt::format("{}: cannot be read as a configuration file", path.string()));
-  }
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  apply_config(options, text, path.string());
+  read_json_file(path, "a configuration file", [&](const Json& config) { apply(options, config); });
 }
 
 std::vector<std::string> preset_names() {

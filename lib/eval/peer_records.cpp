@@ -1,7 +1,6 @@
 #include "eval/peer_records.hpp"
 
-#include <cmath>
-
+#include "cmap/core/color.hpp"
 #include "cmap/metrics/peers.hpp"
 #include "eval/json_number.hpp"
 
@@ -65,11 +64,7 @@ MpegCloud mpeg_cloud(const IndexedMap& map) {
   MpegCloud cloud;
   for (std::size_t slot = 0; slot < map.size(); ++slot) {
     cloud.positions.push_back(map.index.points.offset(slot));
-    std::array<std::uint8_t, 3> rgb{};
-    for (std::size_t c = 0; c < 3; ++c) {
-      rgb[c] = static_cast<std::uint8_t>(std::lround(map.color(slot)[static_cast<Eigen::Index>(c)]));
-    }
-    cloud.rgb.push_back(rgb);
+    cloud.rgb.push_back(to_rgb8(color_at(map.colors, slot)));
   }
   return cloud;
 }

@@ -1,13 +1,10 @@
 #include "cmap/eval/point_errors.hpp"
 
-#include <cmath>
-
+#include "cmap/core/color.hpp"
 #include "cmap/io/point_cloud_file.hpp"
 
 namespace cmap {
 namespace {
-
-std::uint8_t to_8bit(float value_255) { return static_cast<std::uint8_t>(std::lround(value_255)); }
 
 /// The map in its own order; colors as 8 bit.
 PointCloud point_cloud(const IndexedMap& map) {
@@ -19,9 +16,7 @@ PointCloud point_cloud(const IndexedMap& map) {
   for (std::size_t slot = 0; slot < points.size; ++slot) {
     const std::uint32_t i = points.original_index[slot];
     cloud.positions[i] = points.offset(slot);
-    if (!map.has_color()) continue;
-    const Eigen::Vector3f color = color_at(map.colors, slot);
-    colors[i] = {to_8bit(color.x()), to_8bit(color.y()), to_8bit(color.z())};
+    if (map.has_color()) colors[i] = to_rgb8(color_at(map.colors, slot));
   }
   if (map.has_color()) cloud.colors = std::move(colors);
   return cloud;
@@ -44,8 +39,7 @@ void write_errors(const Evaluation& evaluation, const NearestPairs& pairs, const
   std::vector<PointField> fields{{"scalar_distance_m", distances}};
   Array<float> color_distances, recall_classes;
   if (evaluation.pair.has_color()) {
-    color_distances =
-        field(points, [&](std::size_t slot) { return (pairs.from_color(slot) - pairs.to_color(slot)).norm() / 255.0; });
+    color_distances = field(points, [&](std::size_t slot) { return pairs.color_distance(slot); });
     fields.push_back({"scalar_color_distance", color_distances});
   }
   if (recall != nullptr) {
@@ -64,18 +58,6 @@ void write_estimate_errors(const Evaluation& evaluation, OutputFile& file) {
 void write_reference_errors(const Evaluation& evaluation, OutputFile& file) {
   write_errors(evaluation, evaluation.pair.reference_to_estimate(), evaluation.recall ? &*evaluation.recall : nullptr,
                file);
-}
-
-void write_estimate_errors(const Evaluation& evaluation, const std::filesystem::path& path) {
-  OutputFile file(path);
-  write_estimate_errors(evaluation, file);
-  file.commit();
-}
-
-void write_reference_errors(const Evaluation& evaluation, const std::filesystem::path& path) {
-  OutputFile file(path);
-  write_reference_errors(evaluation, file);
-  file.commit();
 }
 
 }  // namespace cmap

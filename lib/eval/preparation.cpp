@@ -35,10 +35,9 @@ void check_voxels(const char* option, double size_m, const Box3d& box) {
   }
 }
 
-void check_voxels_of_metrics(const EvaluationOptions& options, const Box3d& box) {
-  const MetricSelection selection = select_metrics(options);
+void check_voxels_of_metrics(const EvaluationOptions& options, const MetricSelection& selection, const Box3d& box) {
   if (selection.contains("color_consistency")) check_voxels("ccs-voxel", options.ccs_voxel_m, box);
-  if (selection.contains("average_wasserstein")) check_voxels("awd-voxel", options.awd_voxel_m, box);
+  if (selection.needs_gaussians) check_voxels("awd-voxel", options.awd_voxel_m, box);
 }
 
 void crop_and_thin(PointCloud& cloud, const EvaluationOptions& options, const char* which) {
@@ -86,7 +85,8 @@ void rebase(PointCloud& cloud, const Eigen::Vector3d& origin) {
 }  // namespace
 
 void prepare_clouds(PointCloud& reference, PointCloud& estimate, const EvaluationOptions& options,
-                    const Eigen::Matrix4d& T_ref_est, std::vector<Warning>& warnings) {
+                    const MetricSelection& selection, const Eigen::Matrix4d& T_ref_est,
+                    std::vector<Warning>& warnings) {
   require_finite_points(reference, "reference");
   require_finite_points(estimate, "estimate");
   if (T_ref_est != Eigen::Matrix4d::Identity()) estimate = transformed(estimate, T_ref_est);
@@ -95,7 +95,7 @@ void prepare_clouds(PointCloud& reference, PointCloud& estimate, const Evaluatio
 
   const Box3d reference_box = bounds(reference);
   const Box3d estimate_box = bounds(estimate);
-  for (const Box3d& box : {reference_box, estimate_box}) check_voxels_of_metrics(options, box);
+  for (const Box3d& box : {reference_box, estimate_box}) check_voxels_of_metrics(options, selection, box);
   warn_about_frames(reference_box, estimate_box, warnings);
   if (gap_between(reference_box, estimate_box) <= kFarApart_m) {
     const Eigen::Vector3d origin =

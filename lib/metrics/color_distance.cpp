@@ -100,13 +100,17 @@ Eigen::Vector3d ColorPsnr::psnr_db() const {
   });
 }
 
+double delta_e(const NearestPairs& pairs, std::size_t slot) {
+  return delta_e_2000(srgb_to_lab(pairs.from_color(slot) / 255.0), srgb_to_lab(pairs.to_color(slot) / 255.0));
+}
+
 DeltaEStats delta_e(const NearestPairs& pairs, double max_distance_m) {
   require_colors(pairs.from, pairs.to);
   std::vector<double> values(pairs.size(), kNone);
   parallel_chunks(pairs.size(), kLoopChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (pairs.distance_m(i) > max_distance_m) continue;
-      values[i] = delta_e_2000(srgb_to_lab(pairs.from_color(i) / 255.0), srgb_to_lab(pairs.to_color(i) / 255.0));
+      values[i] = delta_e(pairs, i);
     }
   });
   std::erase_if(values, [](double v) { return std::isnan(v); });

@@ -1,7 +1,5 @@
 #include "cmap/render/camera.hpp"
 
-#include <fmt/format.h>
-
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -9,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "cmap/core/error.hpp"
+#include "render/names.hpp"
 
 namespace cmap {
 namespace {
@@ -78,12 +76,12 @@ Eigen::Matrix3d axes_of(const Eigen::Vector3d& forward, const Eigen::Vector3d& u
 }  // namespace
 
 View view_from_name(std::string_view name) {
-  if (name == "top") return View::kTop;
-  if (name == "oblique") return View::kOblique;
-  if (name == "front") return View::kFront;
-  if (name == "side") return View::kSide;
-  if (name == "fit") return View::kFit;
-  throw UsageError(fmt::format("camera \"{}\" is none of top, oblique, front, side, fit", name));
+  return value_of_name<View>("camera", name,
+                             {{"top", View::kTop},
+                              {"oblique", View::kOblique},
+                              {"front", View::kFront},
+                              {"side", View::kSide},
+                              {"fit", View::kFit}});
 }
 
 Box3d box_to_show(const PointBlocks& points) {
@@ -106,8 +104,9 @@ Box3d box_to_show(const PointBlocks& points) {
   return {box.min.array() - margin, box.max.array() + margin};
 }
 
-Camera camera_for(View view, const PointBlocks& points, const Box3d& box, double aspect, bool orthographic) {
+Camera camera_for(View view, const PointBlocks& points, double aspect, bool orthographic) {
   constexpr double kRoom = 1.03;
+  const Box3d box = box_to_show(points);
   Camera camera;
   camera.orthographic = orthographic;
   camera.up = view == View::kTop ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitZ();

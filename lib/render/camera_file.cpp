@@ -1,16 +1,16 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "cmap/core/error.hpp"
+#include "cmap/io/json_text.hpp"
 #include "cmap/render/camera.hpp"
 
 namespace cmap {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 double number(const std::string& key, const Json& value, double above, double below) {
   if (!value.is_number()) throw UsageError(fmt::format("{}: {} is not a number", key, value.dump()));
@@ -67,16 +67,9 @@ Camera camera_from(const Json& json) {
 }  // namespace
 
 Camera read_camera(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw UsageError(fmt::format("{}: cannot be read", path.string()));
-  try {
-    return camera_from(Json::parse(file, nullptr, true, /*ignore_comments=*/true));
-  } catch (const Json::exception& error) {
-    const std::string_view message = error.what();
-    throw UsageError(fmt::format("{}: {}", path.string(), message.substr(message.find(']') + 2)));
-  } catch (const UsageError& error) {
-    throw UsageError(fmt::format("{}: {}", path.string(), error.what()));
-  }
+  Camera camera;
+  read_json_file(path, "a camera", [&](const Json& json) { camera = camera_from(json); });
+  return camera;
 }
 
 }  // namespace cmap

@@ -1,10 +1,8 @@
-#include <fmt/format.h>
-
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "cmap/core/error.hpp"
 #include "cmap/render/layer.hpp"
+#include "render/names.hpp"
 
 namespace cmap {
 namespace {
@@ -25,11 +23,11 @@ std::array<Rgb8, 256> opencv_table(int opencv_map) {
 }  // namespace
 
 ColorMap color_map_from_name(std::string_view name) {
-  if (name == "viridis") return ColorMap::kViridis;
-  if (name == "cividis") return ColorMap::kCividis;
-  if (name == "inferno") return ColorMap::kInferno;
-  if (name == "turbo") return ColorMap::kTurbo;
-  throw UsageError(fmt::format("color map \"{}\" is none of viridis, cividis, inferno, turbo", name));
+  return value_of_name<ColorMap>("color map", name,
+                                 {{"viridis", ColorMap::kViridis},
+                                  {"cividis", ColorMap::kCividis},
+                                  {"inferno", ColorMap::kInferno},
+                                  {"turbo", ColorMap::kTurbo}});
 }
 
 const std::array<Rgb8, 256>& color_table(ColorMap map) {

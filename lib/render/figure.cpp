@@ -8,6 +8,7 @@
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
 #include "render/legend.hpp"
+#include "render/names.hpp"
 
 namespace cmap {
 namespace {
@@ -122,10 +123,9 @@ void check_size(std::size_t n_layers, const FigureOptions& options) {
 }  // namespace
 
 Background background_from_name(std::string_view name) {
-  if (name == "white") return Background::kWhite;
-  if (name == "black") return Background::kBlack;
-  if (name == "transparent") return Background::kTransparent;
-  throw UsageError(fmt::format("background \"{}\" is none of white, black, transparent", name));
+  return value_of_name<Background>(
+      "background", name,
+      {{"white", Background::kWhite}, {"black", Background::kBlack}, {"transparent", Background::kTransparent}});
 }
 
 double panel_aspect(std::size_t n_layers, const FigureOptions& options) {

@@ -10,16 +10,12 @@
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
 #include "cmap/metrics/color_consistency.hpp"
+#include "cmap/metrics/color_distance.hpp"
 #include "cmap/metrics/wasserstein.hpp"
 #include "cmap/spatial/voxel_map.hpp"
 
 namespace cmap {
 namespace {
-
-Rgb8 rounded(const Eigen::Vector3f& color_255) {
-  const auto byte = [](float v) { return static_cast<std::uint8_t>(std::lround(std::clamp(v, 0.0f, 255.0f))); };
-  return {byte(color_255.x()), byte(color_255.y()), byte(color_255.z())};
-}
 
 /// A color for every slot.
 template <class ColorAt>
@@ -86,15 +82,9 @@ Layer heat_map(const PointBlocks& points, std::string title, ColorMap map, std::
 /// Values of voxels by their world index, painted onto the points in them; points elsewhere have no value.
 class VoxelValues {
  public:
-  VoxelValues(const IndexedMap& map, double voxel_m) : frame_(map.index.bounds(), voxel_m), voxel_m_(voxel_m) {}
+  VoxelValues(const IndexedMap& map, double voxel_m) : frame_(map.index.bounds(), voxel_m) {}
 
-  void set(const std::array<std::int64_t, 3>& index, double value) {
-    Eigen::Vector3d center;
-    for (int axis = 0; axis < 3; ++axis) {
-      center[axis] = (static_cast<double>(index[static_cast<std::size_t>(axis)]) + 0.5) * voxel_m_;
-    }
-    values_[frame_.key(center)] = value;
-  }
+  void set(const std::array<std::int64_t, 3>& index, double value) { values_[frame_.key(index)] = value; }
 
   double at(const Eigen::Vector3d& world) const {
     const double* value = values_.find(frame_.key(world));
@@ -103,7 +93,6 @@ class VoxelValues {
 
  private:
   VoxelFrame frame_;
-  double voxel_m_;
   VoxelMap<double> values_;
 };
 
@@ -165,7 +154,7 @@ Layer color_layer(const IndexedMap& map, std::string title) {
   Layer layer;
   layer.title = std::move(title);
   layer.points = &map.index.points;
-  layer.colors = painted(map.size(), [&](std::size_t slot) { return rounded(color_at(map.colors, slot)); });
+  layer.colors = painted(map.size(), [&](std::size_t slot) { return to_rgb8(color_at(map.colors, slot)); });
   return layer;
 }
 
@@ -199,27 +188,37 @@ void require_color(const Evaluation& evaluation, std::string_view layer) {
   if (!evaluation.pair.has_color()) throw UnsupportedError(fmt::format("layer {}: both maps need color", layer));
 }
 
-Layer error_layer(const Evaluation& evaluation, std::string_view name, const LayerOptions& options) {
+Layer distance_layer(const Evaluation& evaluation, const LayerOptions& options) {
   const NearestPairs pairs = evaluation.pair.estimate_to_reference();
-  const PointBlocks& points = pairs.from.index.points;
-  if (name == "distance") {
-    Layer layer = heat_map(points, "Distance to the reference", ColorMap::kViridis, "m", options,
-                           [&](std::size_t slot) { return pairs.distance_m(slot); });
-    layer.caption = caption_of(evaluation, "chamfer");
-    return layer;
-  }
-  require_color(evaluation, name);
-  if (name == "delta-e") {
-    const auto lab = [](const Eigen::Vector3d& color) { return srgb_to_lab(color / 255.0); };
-    return heat_map(points, "CIEDE2000", ColorMap::kInferno, "", options, [&](std::size_t slot) {
-      return delta_e_2000(lab(pairs.from_color(slot)), lab(pairs.to_color(slot)));
-    });
-  }
-  Layer layer = heat_map(points, "Color distance", ColorMap::kInferno, "unit RGB", options, [&](std::size_t slot) {
-    return (pairs.from_color(slot) - pairs.to_color(slot)).norm() / 255.0;
-  });
-  layer.caption = caption_of(evaluation, "color_distance");
-  return layer;
+  return heat_map(pairs.from.index.points, "Distance to the reference", ColorMap::kViridis, "m", options,
+                  [&](std::size_t slot) { return pairs.distance_m(slot); });
+}
+
+Layer color_distance_layer(const Evaluation& evaluation, const LayerOptions& options) {
+  require_color(evaluation, "color-distance");
+  const NearestPairs pairs = evaluation.pair.estimate_to_reference();
+  return heat_map(pairs.from.index.points, "Color distance", ColorMap::kInferno, "unit RGB", options,
+                  [&](std::size_t slot) { return pairs.color_distance(slot); });
+}
+
+Layer delta_e_layer(const Evaluation& evaluation, const LayerOptions& options) {
+  require_color(evaluation, "delta-e");
+  const NearestPairs pairs = evaluation.pair.estimate_to_reference();
+  return heat_map(pairs.from.index.points, "CIEDE2000", ColorMap::kInferno, "", options,
+                  [&](std::size_t slot) { return delta_e(pairs, slot); });
+}
+
+Layer layer_of(const Evaluation& evaluation, std::string_view name, const LayerOptions& options) {
+  if (name == "reference") return make_layer(evaluation.pair.reference, "Reference", options);
+  if (name == "estimate") return make_layer(evaluation.pair.estimate, "Estimate", options);
+  if (name == "lcr") return recall_layer(evaluation);
+  if (name == "color-distance") return color_distance_layer(evaluation, options);
+  if (name == "distance") return distance_layer(evaluation, options);
+  if (name == "delta-e") return delta_e_layer(evaluation, options);
+  if (name == "ccs") return consistency_layer(evaluation, options);
+  if (name == "wasserstein") return wasserstein_layer(evaluation, options);
+  if (name == "density") return density_layer(evaluation, options);
+  return height_layer(evaluation.pair.estimate, "Height", options);
 }
 
 }  // namespace
@@ -230,25 +229,27 @@ const std::vector<std::string>& layer_names() {
   return names;
 }
 
-Layer make_layer(const Evaluation& evaluation, std::string_view name, const LayerOptions& options) {
+void check_layer_name(std::string_view name) {
   if (std::ranges::find(layer_names(), name) == layer_names().end()) {
     throw UsageError(fmt::format("layer \"{}\" is unknown; layers are {}", name, fmt::join(layer_names(), ", ")));
   }
-  if (name == "reference") return make_layer(evaluation.pair.reference, "Reference", options);
-  if (name == "estimate") return make_layer(evaluation.pair.estimate, "Estimate", options);
-  if (name == "height") return height_layer(evaluation.pair.estimate, "Height", options);
-  if (name == "density") return density_layer(evaluation, options);
-  if (name == "ccs" || name == "wasserstein") {
-    Layer layer = name == "ccs" ? consistency_layer(evaluation, options) : wasserstein_layer(evaluation, options);
-    layer.caption = caption_of(evaluation, name == "ccs" ? "color_consistency" : "average_wasserstein");
-    return layer;
-  }
-  if (name == "lcr") {
-    Layer layer = recall_layer(evaluation);
-    layer.caption = caption_of(evaluation, "local_color_recall");
-    return layer;
-  }
-  return error_layer(evaluation, name, options);
+}
+
+std::string_view metric_of_layer(std::string_view name) {
+  if (name == "lcr") return "local_color_recall";
+  if (name == "color-distance") return "color_distance";
+  if (name == "distance") return "chamfer";
+  if (name == "delta-e") return "delta_e";
+  if (name == "ccs") return "color_consistency";
+  if (name == "wasserstein") return "average_wasserstein";
+  return "";
+}
+
+Layer make_layer(const Evaluation& evaluation, std::string_view name, const LayerOptions& options) {
+  check_layer_name(name);
+  Layer layer = layer_of(evaluation, name, options);
+  layer.caption = caption_of(evaluation, metric_of_layer(name));
+  return layer;
 }
 
 Layer make_layer(const IndexedMap& map, const std::string& title, const LayerOptions& options) {

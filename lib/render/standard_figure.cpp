@@ -15,9 +15,8 @@ void write_standard_figure(const Evaluation& evaluation, const std::filesystem::
   std::vector<Layer> layers;
   for (const std::string& panel : standard_panels(evaluation)) layers.push_back(make_layer(evaluation, panel));
   const FigureOptions options;
-  const PointBlocks& points = evaluation.pair.reference.index.points;
   const Camera camera =
-      camera_for(View::kOblique, points, box_to_show(points), panel_aspect(layers.size(), options), false);
+      camera_for(View::kOblique, evaluation.pair.reference.index.points, panel_aspect(layers.size(), options), false);
   write_image(draw_figure(layers, camera, options), name, file);
 }
 

@@ -122,6 +122,11 @@ TEST(RgbToYcbcr709, IsTheStandardToFourDecimals) {
   }
 }
 
+TEST(ToRgb8, RoundsAndStaysWithinTheRange) {
+  EXPECT_EQ(to_rgb8({0.49f, 0.5f, 254.5f}), (Rgb8{0, 1, 255}));
+  EXPECT_EQ(to_rgb8({-3.0f, 300.0f, 17.0f}), (Rgb8{0, 255, 17}));
+}
+
 TEST(Rgb255, EightBitIsExact) {
   const Colors colors = Array<Rgb8>{{0, 1, 2}, {127, 254, 255}};
   EXPECT_EQ(rgb_255(colors, 0), (RgbF{0.0f, 1.0f, 2.0f}));

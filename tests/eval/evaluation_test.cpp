@@ -22,6 +22,7 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::StartsWith;
 
 /// Values found by hand: distances 0.25 and 3 one way; 0.25, 3 and 5 the other.
 const PointCloud kReference =
@@ -76,6 +77,16 @@ TEST(Evaluation, RecordsAreThoseAskedForInTheCatalogsOrder) {
   std::vector<std::string> all;
   for (const MetricInfo& metric : metric_catalog()) all.emplace_back(metric.id);
   EXPECT_EQ(ids(evaluate(kReference, kEstimate, options_for({"all"}))), all);
+}
+
+TEST(Evaluation, VoxelsTooSmallAreRefusedForWhateverUsesThem) {
+  EvaluationOptions options = options_for({"spatial_consistency"});
+  options.awd_voxel_m = 1e-9;  // 3e9 along an axis
+  EXPECT_THAT(refusal_of<UsageError>([&] { evaluate(kReference, kEstimate, options); }), StartsWith("awd-voxel: "));
+  options.metrics = {"chamfer"};
+  EXPECT_NO_THROW(evaluate(kReference, kEstimate, options));
+  options.as = {"mapeval"};
+  EXPECT_THAT(refusal_of<UsageError>([&] { evaluate(kReference, kEstimate, options); }), StartsWith("awd-voxel: "));
 }
 
 TEST(Evaluation, NothingElseIsComputed) {

@@ -61,17 +61,23 @@ const PointCloud kReference =
     small_map({{0, 0, 0}, {8, 0, 0}, {0, 5.25f, 0}}, {Rgb8{0, 0, 0}, Rgb8{0, 255, 0}, Rgb8{51, 0, 0}});
 const PointCloud kEstimate = small_map({{8, 3, 0}, {0, 0.25f, 0}}, {Rgb8{0, 255, 0}, Rgb8{51, 0, 0}});
 
-Columns estimate_errors(const Evaluation& evaluation) {
+using Writer = void (*)(const Evaluation&, OutputFile&);
+
+void write(Writer errors, const Evaluation& evaluation, const std::filesystem::path& path) {
+  OutputFile file(path);
+  errors(evaluation, file);
+  file.commit();
+}
+
+Columns written(Writer errors, const Evaluation& evaluation) {
   const testing::TempFolder folder;
-  write_estimate_errors(evaluation, folder / "errors.ply");
+  write(errors, evaluation, folder / "errors.ply");
   return read_columns(folder / "errors.ply");
 }
 
-Columns reference_errors(const Evaluation& evaluation) {
-  const testing::TempFolder folder;
-  write_reference_errors(evaluation, folder / "errors.ply");
-  return read_columns(folder / "errors.ply");
-}
+Columns estimate_errors(const Evaluation& evaluation) { return written(write_estimate_errors, evaluation); }
+
+Columns reference_errors(const Evaluation& evaluation) { return written(write_reference_errors, evaluation); }
 
 TEST(EstimateErrors, AreScalarFieldsInOriginalOrder) {
   const Columns columns = estimate_errors(evaluate(kReference, kEstimate, EvaluationOptions{}));
@@ -165,8 +171,9 @@ TEST(PointErrors, WriteColorsOfAnyStorageAs8Bit) {
 TEST(PointErrors, AnUnwritableFileIsNamed) {
   const Evaluation evaluation = evaluate(kReference, kEstimate, options_for({"chamfer"}));
   for (const char* path : {"/no/such/folder/errors.ply", "/dev/full"}) {
-    EXPECT_THAT(refusal_of<UsageError>([&] { write_estimate_errors(evaluation, path); }), HasSubstr(path));
-    EXPECT_THAT(refusal_of<UsageError>([&] { write_reference_errors(evaluation, path); }), HasSubstr(path));
+    for (Writer errors : {&write_estimate_errors, &write_reference_errors}) {
+      EXPECT_THAT(refusal_of<UsageError>([&] { write(errors, evaluation, path); }), HasSubstr(path));
+    }
   }
 }
 

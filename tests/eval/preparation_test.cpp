@@ -26,7 +26,7 @@ struct Prepared {
 Prepared prepared(PointCloud reference, PointCloud estimate, const EvaluationOptions& options = {},
                   const Eigen::Matrix4d& T_ref_est = Eigen::Matrix4d::Identity()) {
   Prepared result{std::move(reference), std::move(estimate), {}};
-  prepare_clouds(result.reference, result.estimate, options, T_ref_est, result.warnings);
+  prepare_clouds(result.reference, result.estimate, options, select_metrics(options), T_ref_est, result.warnings);
   return result;
 }
 

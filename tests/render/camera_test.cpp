@@ -36,7 +36,7 @@ TEST_P(EveryView, ShowsTheWholeMapAndFillsThePicture) {
   const auto& [name, orthographic] = GetParam();
   const PointBlocks points = sort_points(test::sheet_cloud(5000, 1));
   const Box3d box = box_to_show(points);
-  const Projection projection(camera_for(view_from_name(name), points, box, 1.6, orthographic), 1600, 1000);
+  const Projection projection(camera_for(view_from_name(name), points, 1.6, orthographic), 1600, 1000);
   Eigen::Array2d least(1e9, 1e9), most(-1e9, -1e9);
   for (std::size_t slot = 0; slot < points.size; ++slot) {
     const Eigen::Vector3d p = points.world(slot).cwiseMax(box.min).cwiseMin(box.max);
@@ -87,6 +87,7 @@ TEST(ReadCamera, RefusesByFileAndKey) {
   EXPECT_THAT(refusal("{"), HasSubstr("camera.json: parse error at line 1"));
   EXPECT_THAT(refusal("[]"), HasSubstr("expected a JSON object"));
   EXPECT_THAT(refusal(R"({"position": [0, 0, 0]})"), HasSubstr("unknown key \"position\""));
+  EXPECT_THAT(refusal(R"({"up": [0, 0, 1], "up": [0, 1, 0]})"), HasSubstr("key \"up\" is given twice"));
   EXPECT_THAT(refusal(R"({"position_m": [0, 0]})"), HasSubstr("position_m: expected [x, y, z]"));
   EXPECT_THAT(refusal(R"({"position_m": [0, 0, "a"]})"), HasSubstr("is not a number"));
   EXPECT_THAT(refusal(R"({"position_m": [0, 0, 0]})"), HasSubstr("target_m is missing"));

@@ -17,8 +17,7 @@ std::size_t n_red(const Image& image) {
 Image picture(const IndexedMap& map, const FigureOptions& options = {400, 300, Background::kWhite, 1.0}) {
   const PointBlocks& points = map.index.points;
   const Layer layers[] = {make_layer(map, "map")};
-  return draw_figure(layers, camera_for(View::kOblique, points, box_to_show(points), panel_aspect(1, options), false),
-                     options);
+  return draw_figure(layers, camera_for(View::kOblique, points, panel_aspect(1, options), false), options);
 }
 
 TEST(DrawFigure, IsTheSameForAnyNumberOfThreads) {

@@ -86,7 +86,7 @@ TEST(Splat, PointsBehindTheCameraAreNotSeen) {
 
 TEST(Splat, IsTheSameForAnyNumberOfThreads) {
   const PointBlocks points = sort_points(test::sheet_cloud(200'000, 4));
-  const Projection projection(camera_for(View::kOblique, points, box_to_show(points), 1.0, false), 300, 300);
+  const Projection projection(camera_for(View::kOblique, points, 1.0, false), 300, 300);
   Array<std::uint64_t> cells[2];
   for (int threads : {1, 2}) {
     const ThreadLimit limit(threads);

@@ -12,12 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
+from cmap_eval_testing import INPUT, PROGRAM as EVAL, SOURCE, TOWN, UNSUPPORTED, USAGE, hashes, ply
+
 PROGRAM = Path(os.environ["CMAP_RENDER"]).resolve()
-EVAL = Path(os.environ["CMAP_EVAL"]).resolve()
-SOURCE = Path(os.environ["CMAP_SOURCE_DIR"]).resolve()
-TOWN = SOURCE / "data_samples/town"
 REFERENCE, ESTIMATE = TOWN / "reference.ply", TOWN / "estimate.ply"
-NO_COLOR = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n"
 
 
 def decoded(png):
@@ -66,6 +64,23 @@ class Render(unittest.TestCase):
         self.assertNotIn("internal error", result.stderr)
         self.assertFalse(list(self.folder.glob("*.png")) + list(self.folder.glob(".*")))
 
+    def test_inputs_are_never_overwritten(self):
+        copy = self.folder / "map.jpg"
+        copy.write_bytes(REFERENCE.read_bytes())
+        before = hashes(self.folder)
+        self.refused(USAGE, f"{copy}: would overwrite {copy}", copy, "-o", copy)
+        self.assertEqual(hashes(self.folder), before)
+
+    def test_the_options_of_a_layer_s_metric(self):
+        """With a radius of 1 m more of the town is recalled than with 2 cm: other pictures."""
+        wide, narrow = (
+            self.draw(REFERENCE, ESTIMATE, "--panels", "lcr", "--lcr-radius", radius, "--size", "480x320")
+            for radius in (1, 0.02)
+        )
+        self.assertNotEqual(wide, narrow)
+        self.picture.unlink()
+        self.refused(USAGE, "--lcr-tau: 0.0 must be above 0", REFERENCE, ESTIMATE, "-o", self.picture, "--lcr-tau", "0")
+
     def test_a_pair_without_a_display(self):
         png = self.draw(REFERENCE, ESTIMATE, "--quiet")
         self.assertEqual(png[:8], b"\x89PNG\r\n\x1a\n")
@@ -108,7 +123,7 @@ class Render(unittest.TestCase):
             ("none/figure.png: cannot be written", REFERENCE, "-o", self.folder / "none/figure.png"),
         ):
             with self.subTest(says):
-                self.refused(2, says, *arguments)
+                self.refused(USAGE, says, *arguments)
 
     def test_a_camera_file(self):
         camera = self.folder / "camera.json"
@@ -116,7 +131,7 @@ class Render(unittest.TestCase):
         self.draw(REFERENCE, "--camera", camera)
         self.picture.unlink()
         camera.write_text('{"position_m": [0, -50, 50], "target_m": [10, 10, 0], "zoom": 2}')
-        self.refused(2, f'{camera}: unknown key "zoom"', REFERENCE, "-o", self.picture, "--camera", camera)
+        self.refused(USAGE, f'{camera}: unknown key "zoom"', REFERENCE, "-o", self.picture, "--camera", camera)
 
     def test_the_figure_of_an_evaluation(self):
         png = self.draw(REFERENCE, ESTIMATE)
@@ -129,15 +144,15 @@ class Render(unittest.TestCase):
             ("pictures are .png or .jpg", self.folder / "figure.gif"),
             ("cannot be written", self.folder / "none/figure.png"),
         ):
-            self.refused(2, says, REFERENCE, ESTIMATE, "--figure", path, program=EVAL)
+            self.refused(USAGE, says, REFERENCE, ESTIMATE, "--figure", path, program=EVAL)
 
     def test_missing_map(self):
-        self.refused(3, "none.ply", self.folder / "none.ply", "-o", self.picture)
+        self.refused(INPUT, "none.ply", self.folder / "none.ply", "-o", self.picture)
 
     def test_no_color(self):
         plain = self.folder / "plain.ply"
-        plain.write_text(NO_COLOR)
-        self.refused(4, "layer lcr", REFERENCE, plain, "-o", self.picture, "--panels", "lcr")
+        plain.write_text(ply([(1, 2, 3)]))
+        self.refused(UNSUPPORTED, "layer lcr", REFERENCE, plain, "-o", self.picture, "--panels", "lcr")
         self.draw(plain)
         self.draw(REFERENCE, plain)
 

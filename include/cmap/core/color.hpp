@@ -11,6 +11,9 @@ namespace cmap {
 /// divided by 257, float ones multiplied by 255. The cloud must have colors.
 RgbF rgb_255(const Colors& colors, std::size_t i);
 
+/// A color in units of 1/255, rounded; beyond 0..255 the end.
+Rgb8 to_rgb8(const Eigen::Vector3f& rgb_255);
+
 /// CIE L*a*b* (D65, 2 degrees) of an sRGB color in [0,1].
 Eigen::Vector3d srgb_to_lab(const Eigen::Vector3d& rgb);
 

@@ -55,6 +55,9 @@ struct ColorPsnr {
 };
 ColorPsnr color_psnr(const MapPair& pair);
 
+/// CIEDE2000 of one point and its nearest neighbor.
+double delta_e(const NearestPairs& pairs, std::size_t slot);
+
 /// CIEDE2000 of nearest pairs no farther than max_distance_m. NaN without pairs.
 struct DeltaEStats {
   double mean, median, p95;

@@ -31,6 +31,8 @@ struct NearestPairs {
   /// Color of the point and of its nearest neighbor, RGB in units of 1/255.
   Eigen::Vector3d from_color(std::size_t slot) const { return from.color(slot); }
   Eigen::Vector3d to_color(std::size_t slot) const { return to.color(nearest.slot[slot]); }
+  /// Euclidean distance of both colors, unit RGB: 0 to sqrt(3).
+  double color_distance(std::size_t slot) const { return (from_color(slot) - to_color(slot)).norm() / 255.0; }
 };
 
 /// Both maps and both nearest-neighbor fields: what every metric reads.

@@ -53,7 +53,7 @@ CloudCompareDistance cloudcompare_distance(std::span<const double> sq_dist);
 /// A cloud as MPEG's pc_error stores it: float positions, 8-bit colors.
 struct MpegCloud {
   std::vector<Eigen::Vector3f> positions;
-  std::vector<std::array<std::uint8_t, 3>> rgb;
+  std::vector<Rgb8> rgb;
 };
 
 /// pc_error, point to point and color: equal positions merged, the colors of neighbors whose consecutive squared

@@ -28,8 +28,8 @@ View view_from_name(std::string_view name);
 /// shrink the map; never flat in all directions, a map of one point gets 1 m.
 Box3d box_to_show(const PointBlocks& points);
 
-/// The view in which `box` just fits into a picture of this aspect (width / height).
-Camera camera_for(View view, const PointBlocks& points, const Box3d& box, double aspect, bool orthographic);
+/// The view in which box_to_show just fits into a picture of this aspect (width / height).
+Camera camera_for(View view, const PointBlocks& points, double aspect, bool orthographic);
 
 /// A camera as JSON: position_m, target_m, up, and field_of_view_deg or view_height_m (which makes it orthographic).
 /// Throws UsageError that names file and key for unknown keys, wrong types, and a camera that looks nowhere.

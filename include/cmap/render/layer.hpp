@@ -57,6 +57,12 @@ struct LayerOptions {
 /// wasserstein and density (by voxel), height.
 const std::vector<std::string>& layer_names();
 
+/// Throws UsageError on an unknown name.
+void check_layer_name(std::string_view name);
+
+/// The metric whose value a layer's caption shows, as an id of the catalog; empty where there is none.
+std::string_view metric_of_layer(std::string_view name);
+
 /// The layer of an evaluated pair; `lcr` is of the reference, all others but `reference` of the estimate. Throws
 /// UsageError on an unknown name, UnsupportedError where the data cannot give it (no color; LCR was not computed).
 Layer make_layer(const Evaluation& evaluation, std::string_view name, const LayerOptions& options = {});

@@ -26,6 +26,11 @@ class VoxelFrame {
   VoxelKey key(const Eigen::Vector3d& world) const {
     return {axis_key(world.x(), base_[0]), axis_key(world.y(), base_[1]), axis_key(world.z(), base_[2])};
   }
+  /// Of a world index in the box.
+  VoxelKey key(const std::array<std::int64_t, 3>& index) const {
+    return {static_cast<std::int32_t>(index[0] - base_[0]), static_cast<std::int32_t>(index[1] - base_[1]),
+            static_cast<std::int32_t>(index[2] - base_[2])};
+  }
   /// World index of the voxel.
   std::array<std::int64_t, 3> index(const VoxelKey& key) const {
     return {base_[0] + key.x, base_[1] + key.y, base_[2] + key.z};

@@ -1,0 +1,70 @@
+#pragma once
+
+// The options of an evaluation as command-line options.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <map>
+#include <string>
+
+#include "cmap/core/error.hpp"
+#include "cmap/eval/options.hpp"
+
+namespace cmap {
+
+class EvaluationArguments {
+ public:
+  /// Adds the options for which `wanted(name)` holds to the program's help, under Metrics.
+  template <class Wanted>
+  void add_to(CLI::App& app, Wanted&& wanted) {
+    for (const OptionSpec& spec : evaluation_option_specs()) {
+      if (wanted(std::string_view(spec.name))) add(app, spec);
+    }
+  }
+
+  /// Sets what was given. Throws UsageError that names the option.
+  void apply_to(EvaluationOptions& options) const {
+    for (const auto& [spec, text] : texts_) {
+      const CLI::Option& option = *options_.at(spec);
+      if (option.count() == 0) continue;
+      try {
+        set_option(options, *spec, text);
+      } catch (const UsageError& error) {
+        throw UsageError(fmt::format("--{}", error.what()));
+      }
+    }
+  }
+
+ private:
+  void add(CLI::App& app, const OptionSpec& spec) {
+    std::string& text = texts_[&spec];
+    const std::string flag = std::string("--") + spec.name;
+    if (spec.kind == OptionKind::kFlag) {
+      options_[&spec] = app.add_flag_callback(
+                               flag, [&text] { text = "true"; }, spec.help)
+                            ->group("Metrics");
+      return;
+    }
+    std::string help = spec.help;
+    if (const std::string value = default_text(spec); !value.empty()) help += fmt::format(" [{}]", value);
+    options_[&spec] = app.add_option(flag, text, help)->type_name(spec.placeholder)->group("Metrics");
+  }
+
+  /// An option's default as one would type it; empty where it has none.
+  static std::string default_text(const OptionSpec& spec) {
+    const auto value = spec.get(EvaluationOptions{});
+    if (value.is_null() || value.empty()) return "";
+    if (value.is_string()) return value.get<std::string>();
+    if (!value.is_array()) return value.dump();
+    std::string text;
+    for (const auto& item : value)
+      text += (text.empty() ? "" : ",") + (item.is_string() ? item.get<std::string>() : item.dump());
+    return text;
+  }
+
+  std::map<const OptionSpec*, std::string> texts_;
+  std::map<const OptionSpec*, CLI::Option*> options_;
+};
+
+}  // namespace cmap
