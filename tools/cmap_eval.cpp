@@ -3,6 +3,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
@@ -17,6 +18,7 @@
 #include "cmap/eval/requirement.hpp"
 #include "cmap/io/output_file.hpp"
 #include "cmap/report/figure_module.hpp"
+#include "cmap/report/html_report.hpp"
 #include "cmap/report/report.hpp"
 #include "evaluation_arguments.hpp"
 #include "files.hpp"
@@ -40,19 +42,21 @@ constexpr const char* kExample =
 /// The command line as given.
 struct Arguments {
   std::string reference, estimate;
-  std::string output, figure, format = "table", config, preset, transform;
+  std::string output, html, figure, format = "table", config, preset, transform;
   std::string estimate_errors, reference_errors;
   std::vector<std::string> requirements;
   cmap::EvaluationArguments evaluation;
   cmap::CommonArguments common;
 
-  std::vector<std::string> outputs() const { return {output, figure, estimate_errors, reference_errors}; }
+  std::vector<std::string> outputs() const { return {output, html, figure, estimate_errors, reference_errors}; }
 };
 
 void add_options(CLI::App& app, Arguments& a) {
   app.add_option("REF", a.reference, "reference map")->required()->type_name("FILE");
   app.add_option("EST", a.estimate, "estimated map")->required()->type_name("FILE");
   app.add_option("-o,--output", a.output, "write the JSON report here")->type_name("FILE");
+  app.add_option("--html", a.html, "page with everything: tables, curves, both maps in 3-D; implies --lcr-curve")
+      ->type_name("FILE.html");
   app.add_option("--figure", a.figure, "picture of both maps, local color recall and color distance: .png or .jpg")
       ->type_name("FILE");
   app.add_option("--format", a.format, "what to print: table or json [table]")
@@ -73,7 +77,7 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("--export-reference-errors", a.reference_errors, "the same for the reference, with LCR hits")
       ->type_name("FILE.ply");
   cmap::add_common_options(app, a.common, "no table, no progress");
-  cmap::refuse_empty(app, {"--output", "--figure", "--config", "--preset", "--transform", "--export-errors",
+  cmap::refuse_empty(app, {"--output", "--html", "--figure", "--config", "--preset", "--transform", "--export-errors",
                            "--export-reference-errors"});
   a.evaluation.add_to(app, [](std::string_view) { return true; });
 }
@@ -83,6 +87,7 @@ cmap::EvaluationOptions resolve_options(const Arguments& arguments) {
   if (!arguments.preset.empty()) cmap::apply_preset(options, arguments.preset);
   if (!arguments.config.empty()) cmap::apply_config_file(options, arguments.config);
   arguments.evaluation.apply_to(options);
+  if (!arguments.html.empty()) options.lcr_curve = true;
   return options;
 }
 
@@ -100,16 +105,21 @@ bool check_requirements(const std::vector<cmap::Requirement>& requirements, cons
 
 namespace fs = std::filesystem;
 
+/// A name without any extension is the user's business.
+void check_extension(const std::string& output, const std::vector<std::string>& right, const char* what_it_is) {
+  const std::string extension = fs::path(output).extension().string();
+  if (extension.empty() || std::ranges::count(right, extension) > 0) return;
+  throw cmap::UsageError(fmt::format("{}: {}; give it a name that ends in {}", output, what_it_is, right.front()));
+}
+
 /// Outputs that cannot be written, or not in their format, are refused before the work.
 void check_outputs(const Arguments& a) {
   for (const std::string& output : a.outputs()) {
     if (!output.empty()) cmap::require_writable(output);
   }
+  check_extension(a.html, {".html", ".htm", ".HTML", ".HTM"}, "the page is HTML");
   for (const std::string& ply : {a.estimate_errors, a.reference_errors}) {
-    const std::string extension = fs::path(ply).extension().string();
-    if (!extension.empty() && extension != ".ply" && extension != ".PLY") {
-      throw cmap::UsageError(fmt::format("{}: point errors are written as PLY; give it a name that ends in .ply", ply));
-    }
+    check_extension(ply, {".ply", ".PLY"}, "point errors are written as PLY");
   }
 }
 
@@ -120,8 +130,9 @@ void print(const std::string& text) {
 }
 
 /// Prints and writes everything: all outputs or none, and none before the last one is complete.
-void deliver(const Arguments& arguments, const cmap::Evaluation& evaluation, const std::string& report_text,
-             const std::string& printed, const std::optional<cmap::FigureModule>& figures) {
+void deliver(const Arguments& arguments, const cmap::Evaluation& evaluation, const nlohmann::ordered_json& report,
+             const std::optional<cmap::FigureModule>& figures) {
+  const std::string report_text = report.dump(2) + "\n";
   std::list<cmap::OutputFile> files;
   const auto write = [&](const std::string& path, auto&& write_to) {
     if (path.empty()) return;
@@ -130,9 +141,10 @@ void deliver(const Arguments& arguments, const cmap::Evaluation& evaluation, con
   };
   write(arguments.estimate_errors, [&](cmap::OutputFile& file) { cmap::write_estimate_errors(evaluation, file); });
   write(arguments.reference_errors, [&](cmap::OutputFile& file) { cmap::write_reference_errors(evaluation, file); });
+  write(arguments.html, [&](cmap::OutputFile& file) { cmap::write_html_report(report, evaluation, file); });
   write(arguments.figure, [&](cmap::OutputFile& file) { figures->write(evaluation, arguments.figure, file); });
   write(arguments.output, [&](cmap::OutputFile& file) { file.write(report_text); });
-  if (!arguments.common.quiet) print(printed);
+  if (!arguments.common.quiet) print(arguments.format == "json" ? report_text : cmap::format_table(report));
   for (cmap::OutputFile& file : files) file.commit();
 }
 
@@ -185,10 +197,8 @@ ExitCode run(const Arguments& arguments, const std::string& command) {
   run.stage_seconds.insert(run.stage_seconds.end(), evaluation.stage_seconds.begin(), evaluation.stage_seconds.end());
   run.wall_s = seconds();
   const auto report = cmap::make_report(reference_description, estimate_description, evaluation, run);
-  const std::string report_text = report.dump(2) + "\n";
   const bool requirements_hold = check_requirements(requirements, evaluation);
-  deliver(arguments, evaluation, report_text, arguments.format == "json" ? report_text : cmap::format_table(report),
-          figures);
+  deliver(arguments, evaluation, report, figures);
   return requirements_hold ? ExitCode::kDone : ExitCode::kRequirementFailed;
 }
 

@@ -8,7 +8,7 @@ tools=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 packages=(
   g++ cmake ninja-build
   libeigen3-dev libfmt-dev libtbb-dev libssl-dev nlohmann-json3-dev libcli11-dev
-  liblzf-dev liblz4-dev libflann-dev
+  zlib1g-dev liblzf-dev liblz4-dev libflann-dev
   libvtk9-dev libopencv-imgproc-dev fonts-dejavu-core
   libgtest-dev libgmock-dev python3 python3-numpy python3-scipy python3-jsonschema
 )

@@ -30,25 +30,52 @@ bool is_in_group(const MetricInfo& metric, std::string_view group) {
 
 const std::vector<MetricInfo>& metric_catalog() {
   static const std::vector<MetricInfo> catalog{
-      {"color_distance", "CD", "color distance", "color", "unit RGB", "lower", true, false},
-      {"color_fidelity", "CF", "color fidelity", "color", "dB", "higher", true, false},
-      {"local_color_recall", "LCR", "local color recall", "color", "1", "higher", true, false},
-      {"color_consistency", "CCS", "color consistency", "color", "unit RGB^2", "lower", true, false},
-      {"delta_e", "dE00", "CIEDE2000", "color+", "1", "lower", true, false},
-      {"color_distance_by_range", "", "color distance by range", "color+", "unit RGB", "lower", true, false},
-      {"color_distance_exposure_free", "", "color distance, exposure-free", "color+", "unit RGB", "lower", true, false},
-      {"color_psnr", "PSNR", "color PSNR", "color+", "dB", "higher", true, false},
-      {"chamfer", "CD#", "Chamfer distance", "geometry", "m", "lower", false, false},
-      {"accuracy", "AC", "accuracy", "geometry", "m", "lower", false, true},
-      {"fitness", "COM", "fitness (precision)", "geometry", "1", "higher", false, true},
-      {"completeness", "", "completeness (recall)", "geometry", "1", "higher", false, true},
-      {"f_score", "F", "F-score", "geometry", "1", "higher", false, true},
-      {"overlap", "Overlap", "overlap", "geometry", "1", "higher", false, false},
-      {"hausdorff", "", "Hausdorff distance", "geometry", "m", "lower", false, false},
-      {"rmse", "RMSE", "RMSE", "geometry", "m", "lower", false, false},
-      {"average_wasserstein", "AWD", "average Wasserstein distance", "distribution", "m", "lower", false, false},
-      {"spatial_consistency", "SCS", "spatial consistency", "distribution", "1", "lower", false, false},
-      {"mean_map_entropy", "MME", "mean map entropy", "mme", "nats", "lower", false, false},
+      {"color_distance", "CD", "color distance", "color", "unit RGB", "lower", true, false,
+       "Mean color difference (L2 norm of RGB) of every point to its nearest point of the other map, averaged over "
+       "both directions."},
+      {"color_fidelity", "CF", "color fidelity", "color", "dB", "higher", true, false,
+       "-20 log10 of the color distance: the color distance in decibels."},
+      {"local_color_recall", "LCR", "local color recall", "color", "1", "higher", true, false,
+       "Share of reference points with an estimated point within the radius whose color differs by at most 3 tau. "
+       "Never above the coverage, the share with any estimated point there."},
+      {"color_consistency", "CCS", "color consistency", "color", "unit RGB^2", "lower", true, false,
+       "Mean over the estimate's voxels of the trace of the color covariance: how much colors scatter within a voxel."},
+      {"delta_e", "dE00", "CIEDE2000", "color+", "1", "lower", true, false,
+       "Perceived color difference (CIEDE2000) of nearest pairs within the radius of LCR: mean, median and 95th "
+       "percentile of both directions."},
+      {"color_distance_by_range", "", "color distance by range", "color+", "unit RGB", "lower", true, false,
+       "Color distance of the nearest pairs in bins of their distance in space: separates wrong color from wrong "
+       "geometry."},
+      {"color_distance_exposure_free", "", "color distance, exposure-free", "color+", "unit RGB", "lower", true, false,
+       "Color distance after the best gain of every channel on the estimate: what is left without a difference in "
+       "exposure."},
+      {"color_psnr", "PSNR", "color PSNR", "color+", "dB", "higher", true, false,
+       "Peak signal-to-noise ratio of nearest pairs in Y (and Cb, Cr), BT.709, the worse of both directions, as MPEG's "
+       "pc_error."},
+      {"chamfer", "CD#", "Chamfer distance", "geometry", "m", "lower", false, false,
+       "Mean distance of estimated points to the reference plus mean distance of reference points to the estimate."},
+      {"accuracy", "AC", "accuracy", "geometry", "m", "lower", false, true,
+       "Root mean square of the distances to the reference that are at most the threshold, over the estimated points "
+       "that have such."},
+      {"fitness", "COM", "fitness (precision)", "geometry", "1", "higher", false, true,
+       "Share of estimated points within the threshold of the reference (precision)."},
+      {"completeness", "", "completeness (recall)", "geometry", "1", "higher", false, true,
+       "Share of reference points within the threshold of the estimate (recall)."},
+      {"f_score", "F", "F-score", "geometry", "1", "higher", false, true, "Harmonic mean of fitness and completeness."},
+      {"overlap", "Overlap", "overlap", "geometry", "1", "higher", false, false,
+       "Share of estimated points within the overlap distance of the reference."},
+      {"hausdorff", "", "Hausdorff distance", "geometry", "m", "lower", false, false,
+       "Largest distance of any point to the other map; 95th and 99th percentiles beside it."},
+      {"rmse", "RMSE", "RMSE", "geometry", "m", "lower", false, false,
+       "Root mean square distance of all estimated points to the reference; inlier_rmse: of those within the overlap "
+       "distance."},
+      {"average_wasserstein", "AWD", "average Wasserstein distance", "distribution", "m", "lower", false, false,
+       "Mean over voxels that both maps fill of the 2-Wasserstein distance between the Gaussians of their points."},
+      {"spatial_consistency", "SCS", "spatial consistency", "distribution", "1", "lower", false, false,
+       "How unevenly the Wasserstein distances are spread: standard deviation over mean among neighboring voxels, "
+       "averaged."},
+      {"mean_map_entropy", "MME", "mean map entropy", "mme", "nats", "lower", false, false,
+       "Mean entropy of the Gaussian of every point's neighborhood: lower is crisper. Needs no reference."},
   };
   return catalog;
 }

@@ -9,6 +9,7 @@
 #include "cmap/core/color.hpp"
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
+#include "cmap/core/round_number.hpp"
 #include "cmap/metrics/color_consistency.hpp"
 #include "cmap/metrics/color_distance.hpp"
 #include "cmap/metrics/wasserstein.hpp"
@@ -25,16 +26,6 @@ Array<Rgb8> painted(std::size_t n, ColorAt&& color_at_slot) {
     for (std::size_t slot = begin; slot < end; ++slot) colors[slot] = color_at_slot(slot);
   });
   return colors;
-}
-
-/// A number with one digit or 1.5 times a power of ten, at least `value`.
-double round_up(double value) {
-  if (!(value > 0.0)) return 1.0;
-  const double power = std::pow(10.0, std::floor(std::log10(value)));
-  for (double step : {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0}) {
-    if (value <= step * power * (1.0 + 1e-9)) return step * power;
-  }
-  return 10.0 * power;
 }
 
 /// Of the values that are there; 0 without any.
@@ -57,7 +48,7 @@ ColorScale scale_for(const Array<float>& values, ColorMap map, std::string unit,
   } else {
     constexpr double kShown = 0.95;      // the worst few may be anything
     constexpr double kDecades = 1000.0;  // on a logarithmic scale
-    scale.high = round_up(percentile(values, kShown));
+    scale.high = round_number_above(percentile(values, kShown));
     scale.low = scale.logarithmic ? scale.high / kDecades : 0.0;
   }
   return scale;
@@ -158,20 +149,19 @@ Layer color_layer(const IndexedMap& map, std::string title) {
   return layer;
 }
 
-/// Blue, orange and gray stay apart for every kind of color blindness (Okabe and Ito 2008).
 Layer recall_layer(const Evaluation& evaluation) {
   if (!evaluation.recall) {
     throw UnsupportedError("layer lcr: local color recall was not computed; it needs color in both maps");
   }
-  const std::vector<ColorClass> classes{
-      {"not covered", {187, 187, 187}}, {"wrong color", {213, 94, 0}}, {"recalled", {0, 114, 178}}};
   Layer layer;
   layer.title = "Local color recall";
   layer.points = &evaluation.pair.reference.index.points;
-  layer.classes = {classes[2], classes[1], classes[0]};
-  layer.colors = painted(layer.points->size, [&](std::size_t slot) {
-    return classes[static_cast<std::size_t>(evaluation.recall->classes[slot])].color;
-  });
+  for (RecallClass c : {RecallClass::kRecalled, RecallClass::kWrongColor, RecallClass::kNotCovered}) {
+    const RecallClassLook& look = look_of(c);
+    layer.classes.push_back({std::string(look.label), look.color});
+  }
+  layer.colors =
+      painted(layer.points->size, [&](std::size_t slot) { return look_of(evaluation.recall->classes[slot]).color; });
   return layer;
 }
 

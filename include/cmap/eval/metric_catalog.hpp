@@ -18,7 +18,8 @@ struct MetricInfo {
   std::string_view unit;
   std::string_view better;  ///< "lower", "higher"
   bool needs_color;
-  bool per_threshold;  ///< has one value for each of `thresholds`
+  bool per_threshold;           ///< has one value for each of `thresholds`
+  std::string_view definition;  ///< a sentence or two for people
 };
 
 /// All metrics in the order of reports.

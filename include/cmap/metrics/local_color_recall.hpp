@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "cmap/metrics/map_pair.hpp"
@@ -9,6 +11,17 @@ namespace cmap {
 
 /// What local color recall finds at a reference point.
 enum class RecallClass : std::uint8_t { kNotCovered = 0, kWrongColor = 1, kRecalled = 2 };
+
+/// A class for people, with a color that stays apart from the others' for every kind of color blindness (Okabe and Ito
+/// 2008).
+struct RecallClassLook {
+  std::string_view label;
+  Rgb8 color;
+};
+inline constexpr std::array<RecallClassLook, 3> kRecallClassLooks{
+    {{"not covered", {187, 187, 187}}, {"wrong color", {213, 94, 0}}, {"recalled", {0, 114, 178}}}};
+
+inline const RecallClassLook& look_of(RecallClass c) { return kRecallClassLooks[static_cast<std::size_t>(c)]; }
 
 struct LocalColorRecallOptions {
   double tau = 0.1;       ///< a color is right within 3 tau (unit RGB)

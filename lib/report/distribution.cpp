@@ -1,0 +1,53 @@
+#include "report/distribution.hpp"
+
+#include <algorithm>
+
+#include "cmap/core/parallel.hpp"
+#include "cmap/core/round_number.hpp"
+#include "cmap/metrics/order_statistics.hpp"
+
+namespace cmap {
+namespace {
+
+constexpr std::size_t kBins = 200;
+
+Array<double> errors_of(const NearestPairs& pairs, PairError error) {
+  Array<double> errors(pairs.size());
+  parallel_chunks(pairs.size(), kLoopChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t slot = begin; slot < end; ++slot) errors[slot] = (pairs.*error)(slot);
+  });
+  return errors;
+}
+
+struct Counts {
+  std::array<std::uint64_t, kBins + 1> n{};  ///< the last one: beyond
+  Counts& operator+=(const Counts& other) {
+    std::ranges::transform(n, other.n, n.begin(), std::plus<>());
+    return *this;
+  }
+};
+
+DirectedDistribution binned(const Array<double>& errors, double bin_width, double p95) {
+  const auto total = ordered_sum<Counts>(errors.size(), kLoopChunk, [&](std::size_t begin, std::size_t end) {
+    Counts part;
+    for (std::size_t i = begin; i < end; ++i) {
+      ++part.n[static_cast<std::size_t>(std::min(errors[i] / bin_width, static_cast<double>(kBins)))];
+    }
+    return part;
+  });
+  return {{total.n.begin(), total.n.end() - 1}, total.n.back(), p95};
+}
+
+}  // namespace
+
+Distribution distribution_of(const MapPair& pair, PairError error) {
+  constexpr std::array kShares{0.95, 0.99};
+  const Array<double> estimate = errors_of(pair.estimate_to_reference(), error);
+  const Array<double> reference = errors_of(pair.reference_to_estimate(), error);
+  const std::vector<double> of_estimate = quantiles(estimate, kShares);
+  const std::vector<double> of_reference = quantiles(reference, kShares);
+  const double bin_width = round_number_above(std::max(of_estimate[1], of_reference[1])) / static_cast<double>(kBins);
+  return {bin_width, binned(estimate, bin_width, of_estimate[0]), binned(reference, bin_width, of_reference[0])};
+}
+
+}  // namespace cmap

@@ -1,0 +1,208 @@
+#include "cmap/report/html_report.hpp"
+
+#include <fmt/format.h>
+#include <openssl/evp.h>
+#include <zlib.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "cmap/core/round_number.hpp"
+#include "report/distribution.hpp"
+#include "report/html_page.hpp"
+#include "report/packed_map.hpp"
+#include "report/thinning.hpp"
+
+namespace cmap {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kPointsOfPage = 300'000;
+
+std::string gzipped(const std::string& bytes) {
+  constexpr int kGzip = 15 + 16, kMemory = 8;
+  z_stream stream{};
+  if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, kGzip, kMemory, Z_DEFAULT_STRATEGY) != Z_OK) {
+    throw std::runtime_error("zlib cannot start");
+  }
+  std::string compressed(deflateBound(&stream, static_cast<uLong>(bytes.size())), '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  stream.next_out = reinterpret_cast<Bytef*>(compressed.data());
+  stream.avail_out = static_cast<uInt>(compressed.size());
+  const int result = deflate(&stream, Z_FINISH);
+  compressed.resize(stream.total_out);
+  deflateEnd(&stream);
+  if (result != Z_STREAM_END) throw std::runtime_error("zlib cannot compress");
+  return compressed;
+}
+
+std::string base64(const std::string& bytes) {
+  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');  // OpenSSL ends it with a zero
+  const int n = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
+                                reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));
+  text.resize(static_cast<std::size_t>(n));
+  return text;
+}
+
+/// JSON that cannot end the script element around it.
+std::string inlined(const Json& json) {
+  std::string text;
+  for (char c : json.dump()) {
+    if (c == '<') {
+      text += "\\u003c";
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
+Json definitions(const Evaluation& evaluation) {
+  Json list = Json::array();
+  for (const MetricRecord& record : evaluation.metrics) {
+    const MetricInfo& metric = *record.info;
+    list.push_back({{"id", metric.id},
+                    {"symbol", metric.symbol},
+                    {"title", metric.title},
+                    {"group", metric.group},
+                    {"unit", metric.unit},
+                    {"better", metric.better},
+                    {"definition", metric.definition}});
+  }
+  return list;
+}
+
+Json distribution_json(const char* id, const char* title, const char* unit, const Distribution& distribution,
+                       const MapPair& pair) {
+  const auto direction = [](const char* name, const char* label, const DirectedDistribution& d, std::size_t total) {
+    return Json{{"id", name}, {"title", label}, {"counts", d.counts}, {"beyond", d.n_beyond}, {"total", total}};
+  };
+  return {{"id", id},
+          {"title", title},
+          {"unit", unit},
+          {"bin_width", distribution.bin_width},
+          {"directions",
+           {direction("estimate_to_reference", "estimate to reference", distribution.estimate_to_reference,
+                      pair.estimate.size()),
+            direction("reference_to_estimate", "reference to estimate", distribution.reference_to_estimate,
+                      pair.reference.size())}}};
+}
+
+Json height_layer(const char* map, const char* title, const PackedMap& packed) {
+  const auto [low, high] = packed.central_z_m;
+  return {{"id", fmt::format("{}-height", map)},
+          {"title", title},
+          {"map", map},
+          {"kind", "scalar"},
+          {"field", "z"},
+          {"color_map", "viridis"},
+          {"range", {low, high > low ? high : low + 1.0}},
+          {"unit", "m"}};
+}
+
+Json map_layer(const IndexedMap& map, const char* id, const char* title, const PackedMap& packed) {
+  if (!map.has_color()) return height_layer(id, title, packed);
+  return {{"id", id}, {"title", title}, {"map", id}, {"kind", "color"}};
+}
+
+Json error_layer(const char* id, const char* title, const char* field, const char* color_map, const char* unit,
+                 const Distribution& errors) {
+  return {{"id", id},
+          {"title", title},
+          {"map", "estimate"},
+          {"kind", "scalar"},
+          {"field", field},
+          {"color_map", color_map},
+          {"range", {0.0, round_number_above(errors.estimate_to_reference.p95)}},
+          {"unit", unit}};
+}
+
+Json recall_layer() {
+  Json classes = Json::array();
+  for (const RecallClassLook& look : kRecallClassLooks) {
+    classes.push_back({{"label", look.label}, {"color", {look.color[0], look.color[1], look.color[2]}}});
+  }
+  return {{"id", "lcr"},        {"title", "Local color recall"},
+          {"map", "reference"}, {"kind", "classes"},
+          {"field", "lcr"},     {"classes", classes}};
+}
+
+/// Half of the page's points for each map; what a small one leaves goes to the other.
+std::array<std::size_t, 2> points_of_maps(const MapPair& pair) {
+  const std::size_t reference = pair.reference.size(), estimate = pair.estimate.size(), half = kPointsOfPage / 2;
+  return {std::min(reference, kPointsOfPage - std::min(estimate, half)),
+          std::min(estimate, kPointsOfPage - std::min(reference, half))};
+}
+
+std::string file_name(const Json& input) {
+  return std::filesystem::path(input.at("path").get<std::string>()).filename().string();
+}
+
+/// What the page shows beside the report, and the bytes of both maps.
+struct PageData {
+  Json page;
+  std::string points;
+};
+
+PageData page_data(const Json& report, const Evaluation& evaluation) {
+  const MapPair& pair = evaluation.pair;
+  const LocalColorRecall* recall = evaluation.recall ? &*evaluation.recall : nullptr;
+  const auto [n_reference, n_estimate] = points_of_maps(pair);
+  PackedMap reference =
+      pack_map(pair.reference_to_estimate(), recall, evenly_spread_slots(pair.reference.index.points, n_reference));
+  PackedMap estimate =
+      pack_map(pair.estimate_to_reference(), nullptr, evenly_spread_slots(pair.estimate.index.points, n_estimate));
+  const auto named = [](const char* id, const char* title, Json description) {
+    Json map{{"id", id}, {"title", title}};
+    map.update(description);
+    return map;
+  };
+  Json distributions = Json::array();
+  Json layers{map_layer(pair.reference, "reference", "Reference", reference),
+              map_layer(pair.estimate, "estimate", "Estimate", estimate)};
+  if (recall != nullptr) layers.push_back(recall_layer());
+  if (pair.has_color()) {
+    const Distribution colors = distribution_of(pair, &NearestPairs::color_distance);
+    layers.push_back(error_layer("color-distance", "Color distance", "color_distance", "inferno", "unit RGB", colors));
+    distributions.push_back(
+        distribution_json("color_distance", "Color distance to the nearest point", "unit RGB", colors, pair));
+  }
+  const Distribution distances = distribution_of(pair, &NearestPairs::distance_m);
+  layers.push_back(error_layer("distance", "Distance to the reference", "distance", "viridis", "m", distances));
+  distributions.insert(distributions.begin(),
+                       distribution_json("distance", "Distance to the nearest point", "m", distances, pair));
+  if (pair.estimate.has_color()) layers.push_back(height_layer("estimate", "Height", estimate));
+  const Json& inputs = report.at("inputs");
+  return {
+      {{"title", fmt::format("{} against {}", file_name(inputs.at("estimate")), file_name(inputs.at("reference")))},
+       {"metrics", definitions(evaluation)},
+       {"distributions", distributions},
+       {"maps",
+        {named("reference", "Reference", reference.description), named("estimate", "Estimate", estimate.description)}},
+       {"layers", layers}},
+      reference.bytes + estimate.bytes};
+}
+
+}  // namespace
+
+void write_html_report(const Json& report, const Evaluation& evaluation, OutputFile& file) {
+  const std::string_view page = html_page();
+  const std::size_t place = page.find(kHtmlDataPlace);
+  if (place == page.npos) throw std::logic_error("the page has no place for its data");
+  const PageData data = page_data(report, evaluation);
+  const auto script = [&](const char* type, const char* id, const std::string& text) {
+    file.write(fmt::format("<script type=\"{}\" id=\"{}\">", type, id));
+    file.write(text);
+    file.write("</script>\n");
+  };
+  file.write(page.substr(0, place));
+  script("application/json", "cmap-report", inlined(report));
+  script("application/json", "cmap-page", inlined(data.page));
+  script("text/plain", "cmap-points", base64(gzipped(data.points)));
+  file.write(page.substr(place + kHtmlDataPlace.size()));
+}
+
+}  // namespace cmap

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cmap/metrics/local_color_recall.hpp"
+#include "cmap/metrics/map_pair.hpp"
+
+namespace cmap {
+
+/// A map as the page of a report unpacks it (lib/report/web/src/data.ts): `description` tells which planes of values
+/// follow each other in `bytes`. A plane has one value for each point, coded as the difference to the point before,
+/// zig-zag, and split into one run for each of its bytes, low ones first: neighbors are alike, so that gzip finds
+/// little left. Errors are stored as the square root of their share of the largest.
+struct PackedMap {
+  nlohmann::ordered_json description;
+  std::string bytes;
+  std::array<double, 2> central_z_m;  ///< 1st and 99th percentile
+};
+
+/// The points in `slots` of pairs.from with their color and errors; `recall` is null where there is none.
+PackedMap pack_map(const NearestPairs& pairs, const LocalColorRecall* recall, const Array<std::uint32_t>& slots);
+
+}  // namespace cmap

@@ -1,0 +1,75 @@
+#include "report/packed_map.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "cmap/core/parallel.hpp"
+#include "metrics/map_pairs.hpp"
+
+namespace cmap {
+namespace {
+
+using ::testing::ElementsAre;
+
+Array<std::uint32_t> all_slots(const MapPair& pair) {
+  Array<std::uint32_t> slots(pair.reference.size());
+  std::iota(slots.begin(), slots.end(), 0u);
+  return slots;
+}
+
+/// Two reference points, 300 mm apart along x, in Hilbert order; the estimate lies 4 m and 1 m above them.
+TEST(PackMap, HandComputed) {
+  const test::Clouds clouds{test::cloud_of({{0, 0, 0}, {0.3f, 0, 0}}, {{10, 0, 255}, {8, 0, 0}}),
+                            test::cloud_of({{0.3f, 0, 1}}, {{8, 0, 0}})};
+  const MapPair pair = clouds.pair();
+  ASSERT_EQ(pair.reference.index.points.original_index[0], 0u);
+  LocalColorRecall recall;
+  recall.classes = {RecallClass::kNotCovered, RecallClass::kRecalled};
+  const PackedMap packed = pack_map(pair.reference_to_estimate(), &recall, all_slots(pair));
+
+  const auto& description = packed.description;
+  EXPECT_EQ(description.at("points"), 2);
+  EXPECT_EQ(description.at("points_of_map"), 2);
+  EXPECT_THAT(description.at("step_m"), ElementsAre(0.001, 0.001, 0.001));
+  std::string fields;
+  for (const auto& plane : description.at("planes")) {
+    fields += plane.at("field").get<std::string>() + " " + plane.at("type").get<std::string>() + " ";
+  }
+  EXPECT_EQ(fields, "x u24 y u24 z u24 r u8 g u8 b u8 distance u16 color_distance u16 lcr u8 ");
+
+  const double farther_m = std::sqrt(1.0 + static_cast<double>(0.3f) * static_cast<double>(0.3f));
+  EXPECT_DOUBLE_EQ(description.at("planes")[6].at("max").get<double>(), farther_m);
+  // 0 and 300: zig-zag of the differences 0 and 600 = 0x258, low bytes, middle bytes, high bytes.
+  const std::string x{"\x00\x58\x00\x02\x00\x00", 6};
+  const std::string y(6, '\0'), z(6, '\0');
+  const std::string r{"\x14\x03", 2};  // 10, then -2
+  const std::string g(2, '\0');
+  const std::string b{"\x01\x02", 2};  // 255 is -1; from there to 0 it is 1, modulo 256
+  // The farther one is 65535, or -1: zig-zag 1; the other one round(65535 sqrt(1 / 1.04403)) = 64138, so -1397: 2793.
+  const std::string distance{"\x01\xe9\x00\x0a", 4};
+  EXPECT_EQ(packed.bytes.substr(0, 6), x);
+  EXPECT_EQ(packed.bytes.substr(6, 12), y + z);
+  EXPECT_EQ(packed.bytes.substr(18, 6), r + g + b);
+  EXPECT_EQ(packed.bytes.substr(24, 4), distance);
+  EXPECT_EQ(packed.bytes.substr(32), std::string("\x00\x04", 2)) << "class 0, then 2";
+}
+
+TEST(PackMap, WithoutColorThereAreOnlyPositionsAndDistances) {
+  const test::Clouds clouds{test::cloud_of({{0, 0, 0}}), test::cloud_of({{0, 0, 0}}, {{1, 2, 3}})};
+  const MapPair pair = clouds.pair();
+  const PackedMap packed = pack_map(pair.reference_to_estimate(), nullptr, all_slots(pair));
+  EXPECT_EQ(packed.description.at("planes").size(), 4u);
+  EXPECT_EQ(packed.bytes.size(), 3u * 3u + 2u);
+}
+
+TEST(PackMap, AWideMapHasWiderSteps) {
+  const test::Clouds clouds{test::cloud_of({{0, 0, 0}, {1e6f, 0, 0}}), test::cloud_of({{0, 0, 0}})};
+  const MapPair pair = clouds.pair();
+  const PackedMap packed = pack_map(pair.reference_to_estimate(), nullptr, all_slots(pair));
+  EXPECT_DOUBLE_EQ(packed.description.at("step_m")[0].get<double>(), 1e6 / 16777215.0);
+}
+
+}  // namespace
+}  // namespace cmap
