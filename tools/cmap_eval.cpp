@@ -57,7 +57,7 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("-o,--output", a.output, "write the JSON report here")->type_name("FILE");
   app.add_option("--html", a.html, "page with everything: tables, curves, both maps in 3-D; implies --lcr-curve")
       ->type_name("FILE.html");
-  app.add_option("--figure", a.figure, "picture of both maps, local color recall and color distance: .png or .jpg")
+  app.add_option("--figure", a.figure, "picture of both maps, local color recall and color distance: .png, .jpg, .tif")
       ->type_name("FILE");
   app.add_option("--format", a.format, "what to print: table or json [table]")
       ->type_name("FORMAT")

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <functional>
 #include <sstream>
 #include <variant>
 
@@ -9,6 +10,7 @@
 #include "cmap/core/progress.hpp"
 #include "cmap/render/figure.hpp"
 #include "cmap/render/standard_figure.hpp"
+#include "cmap/render/turntable.hpp"
 #include "evaluation_arguments.hpp"
 #include "files.hpp"
 #include "program.hpp"
@@ -29,11 +31,12 @@ constexpr const char* kExample =
     "4 the inputs do not have what a layer needs; 70 internal error.";
 
 struct Arguments {
-  std::string map, estimate, output, transform;
+  std::string map, estimate, output, turntable, transform;
   std::string camera = "oblique", size = "1600x1000", background = "white", color_map;
   std::vector<std::string> panels;
   std::vector<double> range;
   double point_size = 1.0;
+  int frames = 120;
   bool orthographic = false, logarithmic = false;
   cmap::EvaluationArguments evaluation;
   cmap::CommonArguments common;
@@ -42,7 +45,7 @@ struct Arguments {
 void add_options(CLI::App& app, Arguments& a) {
   app.add_option("MAP", a.map, "map to draw; with EST, the reference")->required()->type_name("FILE");
   app.add_option("EST", a.estimate, "estimated map")->type_name("FILE");
-  app.add_option("-o,--output", a.output, "picture to write: .png or .jpg")->required()->type_name("FILE");
+  app.add_option("-o,--output", a.output, "picture to write: .png, .jpg or .tif")->type_name("FILE");
   app.add_option("--panels", a.panels, "layers side by side [reference,estimate,lcr,color-distance]")
       ->type_name("LIST")
       ->delimiter(',')
@@ -63,8 +66,13 @@ void add_options(CLI::App& app, Arguments& a) {
       ->check(CLI::Range(0.01, 100.0).description(""));
   app.add_option("--transform", a.transform, "4x4 matrix T_ref_est that moves the estimate into the reference frame")
       ->type_name("FILE");
+  app.add_option("--turntable", a.turntable, "full turn around the map: .mp4, .gif, or a new folder of frames")
+      ->type_name("NAME");
+  app.add_option("--frames", a.frames, "of the turn, 24 a second [120]")
+      ->type_name("N")
+      ->check(CLI::Range(2, 10000).description(""));
   cmap::add_common_options(app, a.common, "no progress");
-  cmap::refuse_empty(app, {"--output", "--camera", "--color-map", "--transform"});
+  cmap::refuse_empty(app, {"--output", "--turntable", "--camera", "--color-map", "--transform"});
   a.evaluation.add_to(app, [](std::string_view name) {
     return name.starts_with("lcr-") ? name != "lcr-curve" : name.starts_with("ccs-") || name.starts_with("awd-");
   });
@@ -102,17 +110,14 @@ CameraChoice camera_choice(const Arguments& a) {
   return cmap::view_from_name(a.camera);
 }
 
-cmap::Camera camera_of(const CameraChoice& choice, const Arguments& a, const cmap::PointBlocks& points,
-                       std::size_t n_panels, const cmap::FigureOptions& options) {
-  if (const auto* camera = std::get_if<cmap::Camera>(&choice)) return *camera;
-  return cmap::camera_for(std::get<cmap::View>(choice), points, cmap::panel_aspect(n_panels, options), a.orthographic);
-}
-
 /// What is drawn and how, checked before the work.
 struct Plan {
   explicit Plan(const Arguments& a) : options(figure_options(a)), layer(layer_options(a)), camera(camera_choice(a)) {
-    cmap::refuse_overwriting({a.map, a.estimate, a.camera, a.transform}, {a.output});
-    cmap::check_image_name(a.output);
+    cmap::refuse_overwriting({a.map, a.estimate, a.camera, a.transform}, {a.output, a.turntable});
+    if (a.output.empty() && a.turntable.empty()) throw cmap::UsageError("--output is required, or --turntable");
+    if (!a.output.empty()) cmap::check_image_name(a.output);
+    if (!a.output.empty()) cmap::require_writable(a.output);
+    if (!a.turntable.empty()) cmap::check_turntable_name(a.turntable);
     a.evaluation.apply_to(evaluation);
     for (const std::string& panel : a.panels) cmap::check_layer_name(panel);
     (void)cmap::panel_aspect(std::max<std::size_t>(1, a.panels.size()), options);
@@ -123,18 +128,35 @@ struct Plan {
   cmap::EvaluationOptions evaluation;
 };
 
-void draw(const Arguments& a, std::span<const cmap::Layer> layers, const cmap::PointBlocks& points, const Plan& plan,
-          cmap::OutputFile& file) {
-  const cmap::Camera camera = camera_of(plan.camera, a, points, layers.size(), plan.options);
-  const cmap::Image image = cmap::draw_figure(layers, camera, plan.options);
-  cmap::write_image(image, a.output, file);
+cmap::Camera camera_of(const Plan& plan, const std::function<cmap::Camera(cmap::View)>& fitted) {
+  if (const auto* camera = std::get_if<cmap::Camera>(&plan.camera)) return *camera;
+  return fitted(std::get<cmap::View>(plan.camera));
 }
 
-void draw_map(const Arguments& a, const Plan& plan, cmap::OutputFile& file) {
+void draw(const Arguments& a, std::span<const cmap::Layer> layers, const cmap::PointBlocks& points, const Plan& plan,
+          cmap::ProgressBar& progress) {
+  const double aspect = cmap::panel_aspect(layers.size(), plan.options);
+  if (!a.output.empty()) {
+    const cmap::Camera camera =
+        camera_of(plan, [&](cmap::View view) { return cmap::camera_for(view, points, aspect, a.orthographic); });
+    cmap::OutputFile file(a.output);
+    cmap::write_image(cmap::draw_figure(layers, camera, plan.options), a.output, file);
+    file.commit();
+  }
+  if (!a.turntable.empty()) {
+    const cmap::Camera camera = camera_of(
+        plan, [&](cmap::View view) { return cmap::turntable_camera_for(view, points, aspect, a.orthographic); });
+    cmap::write_turntable(layers, cmap::turntable_cameras(camera, a.frames), plan.options, a.turntable,
+                          [&](std::string_view stage, double done) { progress.update(stage, done); });
+  }
+}
+
+void draw_map(const Arguments& a, const Plan& plan, cmap::ProgressBar& progress) {
   if (!a.panels.empty() || !a.transform.empty()) throw cmap::UsageError("--panels and --transform need a second map");
+  progress.update("read", 0.0);
   const cmap::IndexedMap map(cmap::read_point_cloud(a.map).cloud);
   const std::vector<cmap::Layer> layers{cmap::make_layer(map, a.map, plan.layer)};
-  draw(a, layers, map.index.points, plan, file);
+  draw(a, layers, map.index.points, plan, progress);
 }
 
 /// What the panels and their captions need of an evaluation; color only where both maps have it.
@@ -149,27 +171,25 @@ cmap::EvaluationOptions evaluation_options(const Arguments& a, const Plan& plan,
   return options;
 }
 
-void draw_pair(const Arguments& a, const Plan& plan, cmap::OutputFile& file) {
+void draw_pair(const Arguments& a, const Plan& plan, cmap::ProgressBar& progress) {
   const Eigen::Matrix4d T_ref_est = cmap::transform_or_identity(a.transform);
-  cmap::ProgressBar progress(!a.common.quiet);
   progress.update("read", 0.0);
   auto [reference, estimate] = cmap::read_both(a.map, a.estimate);
   const bool has_color = reference.cloud.has_color() && estimate.cloud.has_color();
   const cmap::Evaluation evaluation =
-      cmap::evaluate(std::move(reference.cloud), std::move(estimate.cloud), evaluation_options(a, plan, has_color), T_ref_est,
-                     [&](std::string_view stage, double done) { progress.update(stage, done); });
+      cmap::evaluate(std::move(reference.cloud), std::move(estimate.cloud), evaluation_options(a, plan, has_color),
+                     T_ref_est, [&](std::string_view stage, double done) { progress.update(stage, done); });
   std::vector<cmap::Layer> layers;
   for (const std::string& panel : a.panels.empty() ? cmap::standard_panels(evaluation) : a.panels)
     layers.push_back(cmap::make_layer(evaluation, panel, plan.layer));
-  draw(a, layers, evaluation.pair.reference.index.points, plan, file);
+  draw(a, layers, evaluation.pair.reference.index.points, plan, progress);
 }
 
 cmap::ExitCode run(const Arguments& a) {
   const cmap::ThreadLimit limit(a.common.threads);
   const Plan plan(a);
-  cmap::OutputFile file(a.output);
-  a.estimate.empty() ? draw_map(a, plan, file) : draw_pair(a, plan, file);
-  file.commit();
+  cmap::ProgressBar progress(!a.common.quiet);
+  a.estimate.empty() ? draw_map(a, plan, progress) : draw_pair(a, plan, progress);
   return cmap::ExitCode::kDone;
 }
 

@@ -10,7 +10,7 @@ packages=(
   libeigen3-dev libfmt-dev libtbb-dev libssl-dev nlohmann-json3-dev libcli11-dev
   zlib1g-dev liblzf-dev liblz4-dev libflann-dev
   libvtk9-dev libopencv-imgproc-dev fonts-dejavu-core
-  libgtest-dev libgmock-dev python3 python3-numpy python3-scipy python3-jsonschema
+  libgtest-dev libgmock-dev ffmpeg python3 python3-numpy python3-scipy python3-jsonschema
 )
 for argument in "$@"; do
   case "$argument" in

@@ -73,6 +73,51 @@ Eigen::Matrix3d axes_of(const Eigen::Vector3d& forward, const Eigen::Vector3d& u
   return axes;
 }
 
+/// The camera in direction `backward` from the box in whose picture these points just fit.
+Camera camera_that_shows(const std::vector<Eigen::Vector3d>& shown, const Eigen::Vector3d& backward, bool from_above,
+                         const Box3d& box, double aspect, bool orthographic) {
+  constexpr double kRoom = 1.03;
+  Camera camera;
+  camera.orthographic = orthographic;
+  camera.up = from_above ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitZ();
+  const Eigen::Matrix3d axes = axes_of(-backward, camera.up);
+
+  // What the camera has to see, in its own axes about the box's center; the target is the middle of that.
+  const Eigen::Vector3d center = 0.5 * (box.min + box.max);
+  std::vector<Eigen::Vector3d> seen;
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(INFINITY), high = -low;
+  for (const Eigen::Vector3d& p : shown) {
+    seen.emplace_back(axes * (p - center));
+    low = low.cwiseMin(seen.back());
+    high = high.cwiseMax(seen.back());
+  }
+  Eigen::Vector3d middle = 0.5 * (low + high);
+  const double smallest = 0.01 * (box.max - box.min).norm();
+  const double tangent = std::tan(camera.field_of_view_deg * std::numbers::pi / 360.0);
+  const double half_height = std::max({0.5 * (high.y() - low.y()), 0.5 * (high.x() - low.x()) / aspect, smallest});
+  camera.view_height_m = 2.0 * kRoom * half_height;
+  double distance = 2.0 * (box.max - box.min).norm();
+  // In perspective the middle depends on the distance and the distance on the middle: a few rounds settle both.
+  for (int round = 0; round < 4 && !orthographic; ++round) {
+    distance = 0.0;
+    for (const Eigen::Vector3d& p : seen) {
+      const Eigen::Vector3d d = p - middle;
+      const double reach = std::max({std::abs(d.y()), std::abs(d.x()) / aspect, smallest});
+      distance = std::max(distance, kRoom * reach / tangent - d.z());
+    }
+    Eigen::Vector2d least = Eigen::Vector2d::Constant(INFINITY), most = -least;
+    for (const Eigen::Vector3d& p : seen) {
+      const Eigen::Vector2d at = (p - middle).head<2>() / (distance + p.z() - middle.z());
+      least = least.cwiseMin(at);
+      most = most.cwiseMax(at);
+    }
+    middle.head<2>() += 0.5 * distance * (least + most);
+  }
+  camera.target = center + axes.transpose() * middle;
+  camera.position = camera.target + distance * backward;
+  return camera;
+}
+
 }  // namespace
 
 View view_from_name(std::string_view name) {
@@ -105,47 +150,38 @@ Box3d box_to_show(const PointBlocks& points) {
 }
 
 Camera camera_for(View view, const PointBlocks& points, double aspect, bool orthographic) {
-  constexpr double kRoom = 1.03;
   const Box3d box = box_to_show(points);
-  Camera camera;
-  camera.orthographic = orthographic;
-  camera.up = view == View::kTop ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitZ();
-  const Eigen::Vector3d backward = direction_of(view, points, box);
-  const Eigen::Matrix3d axes = axes_of(-backward, camera.up);
+  std::vector<Eigen::Vector3d> shown = sample(points);
+  for (Eigen::Vector3d& p : shown) p = p.cwiseMax(box.min).cwiseMin(box.max);
+  return camera_that_shows(shown, direction_of(view, points, box), view == View::kTop, box, aspect, orthographic);
+}
 
-  // What the camera has to see, in its own axes about the box's center; the target is the middle of that.
+Camera turntable_camera_for(View view, const PointBlocks& points, double aspect, bool orthographic) {
+  constexpr int kTurns = 24;
+  constexpr std::size_t kShown = 4000;
+  const Box3d box = box_to_show(points);
   const Eigen::Vector3d center = 0.5 * (box.min + box.max);
-  std::vector<Eigen::Vector3d> seen;
-  Eigen::Vector3d low = Eigen::Vector3d::Constant(INFINITY), high = -low;
-  for (const Eigen::Vector3d& p : sample(points)) {
-    seen.emplace_back(axes * (p.cwiseMax(box.min).cwiseMin(box.max) - center));
-    low = low.cwiseMin(seen.back());
-    high = high.cwiseMax(seen.back());
-  }
-  Eigen::Vector3d middle = 0.5 * (low + high);
-  const double smallest = 0.01 * (box.max - box.min).norm();
-  const double tangent = std::tan(camera.field_of_view_deg * std::numbers::pi / 360.0);
-  const double half_height = std::max({0.5 * (high.y() - low.y()), 0.5 * (high.x() - low.x()) / aspect, smallest});
-  camera.view_height_m = 2.0 * kRoom * half_height;
-  double distance = 2.0 * (box.max - box.min).norm();
-  // In perspective the middle depends on the distance and the distance on the middle: a few rounds settle both.
-  for (int round = 0; round < 4 && !orthographic; ++round) {
-    distance = 0.0;
-    for (const Eigen::Vector3d& p : seen) {
-      const Eigen::Vector3d d = p - middle;
-      const double reach = std::max({std::abs(d.y()), std::abs(d.x()) / aspect, smallest});
-      distance = std::max(distance, kRoom * reach / tangent - d.z());
+  const std::vector<Eigen::Vector3d> sampled = sample(points);
+  std::vector<Eigen::Vector3d> shown;
+  for (std::size_t i = 0; i < sampled.size(); i += std::max<std::size_t>(1, sampled.size() / kShown)) {
+    const Eigen::Vector3d from_center = sampled[i].cwiseMax(box.min).cwiseMin(box.max) - center;
+    for (int turn = 0; turn < kTurns; ++turn) {
+      const Eigen::AngleAxisd rotation(2.0 * std::numbers::pi * turn / kTurns, Eigen::Vector3d::UnitZ());
+      shown.emplace_back(center + rotation * from_center);
     }
-    Eigen::Vector2d least = Eigen::Vector2d::Constant(INFINITY), most = -least;
-    for (const Eigen::Vector3d& p : seen) {
-      const Eigen::Vector2d at = (p - middle).head<2>() / (distance + p.z() - middle.z());
-      least = least.cwiseMin(at);
-      most = most.cwiseMax(at);
-    }
-    middle.head<2>() += 0.5 * distance * (least + most);
   }
-  camera.target = center + axes.transpose() * middle;
-  camera.position = camera.target + distance * backward;
+  Camera camera =
+      camera_that_shows(shown, direction_of(view, points, box), view == View::kTop, box, aspect, orthographic);
+  // The turn is about the target: where the line of sight passes the middle of the map, moved onto it.
+  const Eigen::Vector3d forward = (camera.target - camera.position).normalized();
+  const double level = forward.head<2>().squaredNorm();
+  constexpr double kVertical = 1e-12;
+  if (level > kVertical) {
+    camera.target = camera.position + forward.head<2>().dot((center - camera.position).head<2>()) / level * forward;
+  }
+  const Eigen::Vector2d aside = (center - camera.target).head<2>();
+  camera.target.head<2>() += aside;
+  camera.position.head<2>() += aside;
   return camera;
 }
 

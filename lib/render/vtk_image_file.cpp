@@ -3,6 +3,7 @@
 #include <vtkJPEGWriter.h>
 #include <vtkNew.h>
 #include <vtkPNGWriter.h>
+#include <vtkTIFFWriter.h>
 #include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
@@ -20,11 +21,14 @@ std::string lower_case_extension(const std::filesystem::path& name) {
   return extension;
 }
 
-bool is_png(const std::filesystem::path& name) { return lower_case_extension(name) == ".png"; }
+enum class Format { kPng, kJpeg, kTiff };
 
-bool is_jpeg(const std::filesystem::path& name) {
+Format format_of(const std::filesystem::path& name) {
   const std::string extension = lower_case_extension(name);
-  return extension == ".jpg" || extension == ".jpeg";
+  if (extension == ".png") return Format::kPng;
+  if (extension == ".jpg" || extension == ".jpeg") return Format::kJpeg;
+  if (extension == ".tif" || extension == ".tiff") return Format::kTiff;
+  throw UsageError(fmt::format("{}: pictures are .png, .jpg or .tif", name.string()));
 }
 
 /// VTK's rows go from the bottom.
@@ -48,26 +52,37 @@ void write_with(Writer& writer, vtkImageData* image, OutputFile& file) {
   file.write(bytes->GetPointer(0), static_cast<std::size_t>(bytes->GetNumberOfValues()));
 }
 
-}  // namespace
-
-void check_image_name(const std::filesystem::path& name) {
-  if (!is_png(name) && !is_jpeg(name)) throw UsageError(fmt::format("{}: pictures are .png or .jpg", name.string()));
+void write_jpeg(const Image& image, OutputFile& file) {
+  constexpr int kQuality = 92;
+  Image opaque = image;
+  for (Rgba8& pixel : opaque.pixels) pixel = over_white(pixel);
+  vtkNew<vtkJPEGWriter> writer;
+  writer->SetQuality(kQuality);
+  write_with(*writer, to_vtk(opaque, 3), file);
 }
 
+/// VTK writes TIFF only by name.
+void write_tiff(const Image& image, const std::filesystem::path& name, OutputFile& file) {
+  vtkNew<vtkTIFFWriter> writer;
+  writer->SetInputData(to_vtk(image, 4));
+  writer->SetCompressionToPackBits();
+  writer->SetFileName(file.path_for_writer().c_str());
+  writer->Write();
+  if (writer->GetErrorCode() != 0) throw UsageError(fmt::format("{}: cannot be written as TIFF", name.string()));
+}
+
+}  // namespace
+
+void check_image_name(const std::filesystem::path& name) { format_of(name); }
+
 void write_image(const Image& image, const std::filesystem::path& name, OutputFile& file) {
-  check_image_name(name);
-  if (is_png(name)) {
-    vtkNew<vtkPNGWriter> writer;
-    write_with(*writer, to_vtk(image, 4), file);
-  } else {
-    constexpr int kQuality = 92;
-    Image opaque(image.width, image.height, {255, 255, 255, 255});
-    for (int y = 0; y < image.height; ++y) {
-      for (int x = 0; x < image.width; ++x) blend(opaque, x, y, image.at(x, y));
-    }
-    vtkNew<vtkJPEGWriter> writer;
-    writer->SetQuality(kQuality);
-    write_with(*writer, to_vtk(opaque, 3), file);
+  switch (format_of(name)) {
+    case Format::kPng:
+      return write_with(*vtkNew<vtkPNGWriter>(), to_vtk(image, 4), file);
+    case Format::kJpeg:
+      return write_jpeg(image, file);
+    case Format::kTiff:
+      return write_tiff(image, name, file);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <fstream>
 
+#include "cmap/render/turntable.hpp"
 #include "eval/eval_testing.hpp"
 
 namespace cmap {
@@ -55,6 +56,44 @@ TEST_P(EveryView, ShowsTheWholeMapAndFillsThePicture) {
 INSTANTIATE_TEST_SUITE_P(Camera, EveryView,
                          ::testing::Combine(::testing::Values("top", "oblique", "front", "side", "fit"),
                                             ::testing::Bool()));
+
+class EveryTurn : public ::testing::TestWithParam<std::tuple<const char*, bool>> {};
+
+TEST_P(EveryTurn, ShowsTheWholeMapFromAllSides) {
+  const auto& [name, orthographic] = GetParam();
+  PointCloud cloud = test::sheet_cloud(5000, 1);
+  for (Eigen::Vector3f& p : cloud.positions) p.x() *= 3.0f;  // a long map far from the origin
+  cloud.origin = {1000.0, -500.0, 20.0};
+  const PointBlocks points = sort_points(cloud);
+  const Box3d box = box_to_show(points);
+  const Camera first = turntable_camera_for(view_from_name(name), points, 1.6, orthographic);
+  double highest_share = 0.0;
+  for (const Camera& camera : turntable_cameras(first, 7)) {  // angles that are not those it was fitted to
+    EXPECT_NEAR((camera.position - camera.target).norm(), (first.position - first.target).norm(), 1e-6);
+    const Projection projection(camera, 1600, 1000);
+    for (std::size_t slot = 0; slot < points.size; ++slot) {
+      const Eigen::Array2d pixel = pixel_of(projection, points.world(slot).cwiseMax(box.min).cwiseMin(box.max)).array();
+      EXPECT_TRUE((pixel >= 0.0).all() && pixel.x() <= 1600.0 && pixel.y() <= 1000.0);
+      highest_share = std::max(highest_share, ((pixel / Eigen::Array2d(1600, 1000)) - 0.5).abs().maxCoeff() * 2.0);
+    }
+  }
+  EXPECT_GT(highest_share, 0.85) << "it fills the picture from some side";
+}
+
+INSTANTIATE_TEST_SUITE_P(Camera, EveryTurn,
+                         ::testing::Combine(::testing::Values("top", "oblique", "front", "fit"), ::testing::Bool()));
+
+TEST(TurntableCameras, AQuarterTurnByHand) {
+  Camera camera;
+  camera.position = {3.0, 0.0, 2.0};
+  camera.target = {1.0, 0.0, 1.0};
+  const std::vector<Camera> cameras = turntable_cameras(camera, 4);
+  ASSERT_EQ(cameras.size(), 4u);
+  EXPECT_EQ(cameras[0].position, camera.position);
+  EXPECT_TRUE(cameras[1].position.isApprox(Eigen::Vector3d(1.0, 2.0, 2.0), 1e-12));
+  EXPECT_TRUE(cameras[2].position.isApprox(Eigen::Vector3d(-1.0, 0.0, 2.0), 1e-12));
+  EXPECT_EQ(cameras[3].target, camera.target);
+}
 
 TEST(BoxToShow, LeavesOutOutliersButNotThePoint) {
   PointCloud cloud = test::uniform_cloud(10'000, 2, 1.0f);

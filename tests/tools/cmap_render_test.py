@@ -3,6 +3,7 @@
 
 import hashlib
 import os
+import shutil
 import struct
 import subprocess
 import tempfile
@@ -106,6 +107,50 @@ class Render(unittest.TestCase):
         self.picture = self.folder / "figure.jpg"
         self.assertEqual(self.draw(REFERENCE)[:3], b"\xff\xd8\xff")
 
+    def test_tiff(self):
+        self.picture = self.folder / "figure.tif"
+        self.assertEqual(self.draw(REFERENCE, "--size", "320x240")[:4], b"II*\0")
+
+    def turn(self, name, *arguments):
+        result = self.run_program(
+            REFERENCE, ESTIMATE, "--size", "480x321", "--frames", "3", "--turntable", self.folder / name, *arguments
+        )
+        self.assertEqual((result.returncode, result.stderr, result.stdout), (0, "", ""))
+        return self.folder / name
+
+    def test_a_turntable_of_frames(self):
+        frames = sorted(self.turn("turn").iterdir())
+        self.assertEqual([frame.name for frame in frames], [f"frame_{i:04}.png" for i in range(3)])
+        self.assertEqual(len({frame.read_bytes() for frame in frames}), 3)
+        self.refused(USAGE, "turn: exists already", REFERENCE, "--turntable", self.folder / "turn")
+
+    @unittest.skipUnless(shutil.which("ffmpeg"), "no ffmpeg")
+    def test_videos(self):
+        self.assertEqual(self.turn("turn.mp4").read_bytes()[4:8], b"ftyp")
+        self.assertEqual(self.turn("turn.gif").read_bytes()[:6], b"GIF89a")
+        for name in ("turn.mp4", "turn.gif"):
+            again = self.turn(f"again_{name}", "--threads", 1)
+            self.assertEqual((self.folder / name).read_bytes(), again.read_bytes(), "the same for any number of threads")
+            frames = subprocess.run(
+                ["ffprobe", "-v", "error", "-count_frames", "-show_entries", "stream=nb_read_frames", "-of", "csv=p=0", again],
+                capture_output=True,
+                text=True,
+            )
+            self.assertEqual(frames.stdout.strip(" ,\n"), "3")
+
+    def test_turntables_that_cannot_be(self):
+        for says, name in (
+            ("turn.avi: a turntable is a video", "turn.avi"),
+            ("none/turn: cannot be written", "none/turn"),
+        ):
+            self.refused(USAGE, says, REFERENCE, "--frames", 2, "--turntable", self.folder / name)
+        result = subprocess.run(
+            [PROGRAM, REFERENCE, "--turntable", self.folder / "turn.mp4"], capture_output=True, text=True, env={"PATH": "/none"}
+        )
+        self.assertEqual(result.returncode, USAGE)
+        self.assertIn("apt-get install ffmpeg", result.stderr)
+        self.assertEqual(list(self.folder.iterdir()), [])
+
     def test_wrong_usage(self):
         out = ("-o", self.picture)
         for says, *arguments in (
@@ -119,7 +164,7 @@ class Render(unittest.TestCase):
             ("LOW must be below HIGH", REFERENCE, ESTIMATE, *out, "--range", "1,0"),
             ("need a second map", REFERENCE, *out, "--panels", "lcr"),
             ('layer "colour" is unknown', REFERENCE, ESTIMATE, *out, "--panels", "colour"),
-            ("figure.bmp: pictures are .png or .jpg", REFERENCE, "-o", self.folder / "figure.bmp"),
+            ("figure.bmp: pictures are .png, .jpg or .tif", REFERENCE, "-o", self.folder / "figure.bmp"),
             ("none/figure.png: cannot be written", REFERENCE, "-o", self.folder / "none/figure.png"),
         ):
             with self.subTest(says):
@@ -141,7 +186,7 @@ class Render(unittest.TestCase):
 
     def test_figures_that_cannot_be(self):
         for says, path in (
-            ("pictures are .png or .jpg", self.folder / "figure.gif"),
+            ("pictures are .png, .jpg or .tif", self.folder / "figure.gif"),
             ("cannot be written", self.folder / "none/figure.png"),
         ):
             self.refused(USAGE, says, REFERENCE, ESTIMATE, "--figure", path, program=EVAL)

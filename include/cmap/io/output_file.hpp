@@ -19,6 +19,8 @@ class OutputFile {
 
   void write(const void* data, std::size_t bytes);
   void write(std::string_view text) { write(text.data(), text.size()); }
+  /// Where a library that writes files only by name may write, in place of write().
+  const std::filesystem::path& path_for_writer() const { return temporary_.empty() ? path_ : temporary_; }
   /// Flushes to the system and closes, still under the temporary name: what can go wrong has, before several files
   /// that belong together appear. Nothing can be written afterwards.
   void finish();

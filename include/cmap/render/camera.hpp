@@ -31,6 +31,10 @@ Box3d box_to_show(const PointBlocks& points);
 /// The view in which box_to_show just fits into a picture of this aspect (width / height).
 Camera camera_for(View view, const PointBlocks& points, double aspect, bool orthographic);
 
+/// The same for a whole turn about the vertical axis through the target, which is that of the map: it stays in the
+/// picture.
+Camera turntable_camera_for(View view, const PointBlocks& points, double aspect, bool orthographic);
+
 /// A camera as JSON: position_m, target_m, up, and field_of_view_deg or view_height_m (which makes it orthographic).
 /// Throws UsageError that names file and key for unknown keys, wrong types, and a camera that looks nowhere.
 Camera read_camera(const std::filesystem::path& path);

@@ -27,6 +27,9 @@ struct Image {
   }
 };
 
+/// An opaque color: what a transparent one looks like on white.
+Rgba8 over_white(Rgba8 color);
+
 /// Lays `color` over the pixel; outside of the image nothing happens.
 void blend(Image& image, int x, int y, Rgba8 color);
 void fill(Image& image, int x, int y, int width, int height, Rgba8 color);
@@ -40,10 +43,10 @@ void draw_text(Image& image, int x, int y, std::string_view utf8, int size_px, R
 /// Width of what draw_text would draw.
 int text_width(std::string_view utf8, int size_px);
 
-/// Throws UsageError unless the name ends in .png, .jpg or .jpeg.
+/// Throws UsageError unless the name ends in .png, .jpg, .jpeg, .tif or .tiff.
 void check_image_name(const std::filesystem::path& name);
 
-/// The format is that of the name: PNG with alpha, JPEG over white.
+/// The format is that of the name: PNG and TIFF with alpha, JPEG over white.
 void write_image(const Image& image, const std::filesystem::path& name, OutputFile& file);
 
 }  // namespace cmap
