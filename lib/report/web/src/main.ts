@@ -1,0 +1,61 @@
+// The page: each section by itself, so that damage to one leaves the others.
+import { chartSpecs } from './chart_data';
+import { showCharts } from './charts';
+import type { Page, Report } from './contract';
+import { readMaps, readPage, readReport, reportText } from './data';
+import { element, message, section } from './dom';
+import { showHeader } from './header';
+import { showMap } from './map_view';
+import { metricRows } from './records';
+import { showRun } from './run_info';
+import './style.css';
+import { metricTable } from './table';
+import { followTheme } from './theme';
+import { followTooltips } from './tooltip';
+
+const titles: Record<string, string> = { map: 'Map', metrics: 'Metrics', charts: 'Distributions' };
+
+/** Fills a section, or says in it why that was not possible. */
+async function fill(id: string, show: (place: HTMLElement) => void | Promise<void>): Promise<void> {
+  const place = section(id);
+  if (titles[id]) place.append(element('h2', { id: `${id}-title` }, titles[id]));
+  try {
+    await show(place);
+  } catch (error) {
+    place.append(message(error instanceof Error ? error.message : String(error)));
+  }
+}
+
+/** What `read` gives; a failure is told in the head of the page. */
+function readOrTell<T>(read: () => T): T | undefined {
+  try {
+    return read();
+  } catch (error) {
+    section('head').append(message((error as Error).message));
+    return undefined;
+  }
+}
+
+async function showFirstFrame(page: Page): Promise<void> {
+  await fill('map', async (place) => showMap(place, page, await readMaps(page.maps)));
+  performance.mark('cmap-first-frame');
+  document.documentElement.dataset.ready = String(Math.round(performance.now()));
+}
+
+async function showReport(report: Report, page: Page | undefined): Promise<void> {
+  showHeader(section('head'), report, page?.title ?? 'Map evaluation', reportText());
+  const frame = page && showFirstFrame(page);
+  await fill('metrics', (place) => {
+    const table = metricTable(metricRows(report, page));
+    place.append(element('div', { class: 'table-frame' }, table));
+  });
+  await fill('charts', (place) => showCharts(place, chartSpecs(report, page?.distributions ?? [])));
+  await fill('run', (place) => showRun(place, report));
+  await frame;
+}
+
+followTheme();
+followTooltips();
+const report = readOrTell(readReport);
+const page = report && readOrTell(readPage);
+if (report) void showReport(report, page);

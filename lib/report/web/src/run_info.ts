@@ -1,0 +1,55 @@
+// Parameters, alignment, the run, and what other tools would print.
+import type { Json, JsonValue, Report } from './contract';
+import { element } from './dom';
+import { exact, number } from './format';
+import { flatten } from './records';
+import { factList } from './table';
+
+function block(title: string, ...content: (Node | undefined)[]): HTMLElement {
+  return element('div', { class: 'block' }, element('h3', {}, title), ...content);
+}
+
+function matrix(rows: JsonValue | undefined): HTMLElement | undefined {
+  if (!Array.isArray(rows)) return undefined;
+  const lines = (rows as number[][]).map((row) =>
+    element('tr', {}, ...row.map((value) => element('td', { title: exact(value) }, number(value)))),
+  );
+  return element('table', { class: 'matrix' }, element('caption', {}, 'T_ref_est'), element('tbody', {}, ...lines));
+}
+
+function without(record: Json, ...names: string[]): Json {
+  return Object.fromEntries(Object.entries(record).filter(([name]) => !names.includes(name)));
+}
+
+/** Seconds of each stage, as bars of their shares. */
+function stageTable(stages: JsonValue | undefined): HTMLElement | undefined {
+  const entries = Object.entries((stages ?? {}) as Record<string, number>);
+  if (entries.length === 0) return undefined;
+  const largest = Math.max(...entries.map(([, seconds]) => seconds));
+  const rows = entries.map(([name, seconds]) =>
+    element(
+      'tr',
+      {},
+      element('th', { scope: 'row' }, name),
+      element('td', { class: 'number', title: exact(seconds) }, `${number(seconds)} s`),
+      element('td', {}, element('meter', { min: 0, max: largest, value: seconds, 'aria-hidden': 'true' })),
+    ),
+  );
+  return element('table', { class: 'stages' }, element('caption', {}, 'Time by stage'), element('tbody', {}, ...rows));
+}
+
+export function showRun(section: HTMLElement, report: Report): void {
+  const { parameters, alignment, run, aliases } = report;
+  section.append(
+    element(
+      'details',
+      {},
+      element('summary', {}, element('h2', { id: 'run-title' }, 'Parameters and run')),
+      block('Command', element('pre', {}, String(run.command ?? ''))),
+      block('Parameters', factList(Object.entries(parameters))),
+      block('Alignment', factList(flatten(without(alignment, 'T_ref_est'))), matrix(alignment.T_ref_est)),
+      block('Run', factList(flatten(without(run, 'command', 'stages'))), stageTable(run.stages)),
+      aliases && block('Other tools on this pair', factList(flatten(aliases))),
+    ),
+  );
+}
