@@ -1,6 +1,6 @@
 // What the charts show, from the distributions of the page and the curves of the report.
 import type { Direction, Distribution, Json, Report } from './contract';
-import { number, percent, unitText } from './format';
+import { number, percent, short, unitText, withUnit } from './format';
 
 export interface Series {
   label: string;
@@ -51,7 +51,7 @@ function tailNote(distribution: Distribution, end: number): string {
   const shares = distribution.directions.map(
     (direction) => `${percent(shareAbove(direction, end, distribution.bin_width))} (${direction.title})`,
   );
-  return `Above ${number(end)} ${unitText(distribution.unit)}: ${shares.join(', ')}`;
+  return `Above ${withUnit(short(end), distribution.unit)}: ${shares.join(', ')}`;
 }
 
 function histogram(distribution: Distribution, xEnd: number): ChartSpec {
@@ -69,7 +69,7 @@ function histogram(distribution: Distribution, xEnd: number): ChartSpec {
     title: distribution.title,
     note: tailNote(distribution, xEnd),
     xLabel: axisLabel(distribution.id, unit),
-    yLabel: `share of points per ${number(width)} ${unitText(unit)}`,
+    yLabel: `share per ${withUnit(short(width), unit)}`,
     kind: 'steps',
     x: Array.from({ length: bins + 1 }, (_, i) => i * width),
     series: directions.map((direction) => ({ label: direction.title, values: shares(direction) })),
@@ -94,7 +94,7 @@ function cumulative(distribution: Distribution, xEnd: number): ChartSpec {
     title: `${distribution.title}, cumulative`,
     note: directions.map((d) => `${medianText(d, bin_width, unit)} (${d.title})`).join(', '),
     xLabel: axisLabel(distribution.id, unit),
-    yLabel: 'share of points at or below',
+    yLabel: 'share at or below',
     kind: 'line',
     x: Array.from({ length: bins + 1 }, (_, i) => i * bin_width),
     series: directions.map((direction) => ({ label: direction.title, values: shares(direction) })),
@@ -105,7 +105,7 @@ function cumulative(distribution: Distribution, xEnd: number): ChartSpec {
 
 function medianText(direction: Direction, width: number, unit: string): string {
   const median = quantile(direction, 0.5, width);
-  return median === undefined ? 'half beyond the axis' : `half within ${number(median)} ${unitText(unit)}`;
+  return median === undefined ? 'half beyond the axis' : `half within ${withUnit(short(median), unit)}`;
 }
 
 function recallCurve(record: Json | undefined): ChartSpec[] {
@@ -118,7 +118,7 @@ function recallCurve(record: Json | undefined): ChartSpec[] {
       title: 'Local color recall against tau',
       note: typeof curve.area === 'number' ? `Area under the curve ${number(curve.area)}` : '',
       xLabel: 'tau [unit RGB]',
-      yLabel: 'share of the reference recalled',
+      yLabel: 'share recalled',
       kind: 'dots',
       x: curve.tau,
       series: [{ label: 'LCR', values: curve.value }],
@@ -144,8 +144,8 @@ const thresholdCharts: ThresholdChart[] = [
     yLabel: 'share',
     yShare: true,
     metrics: [
-      ['fitness', 'fitness (estimate)'],
-      ['completeness', 'completeness (reference)'],
+      ['fitness', 'fitness'],
+      ['completeness', 'completeness'],
       ['f_score', 'F-score'],
     ],
   },

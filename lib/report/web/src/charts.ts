@@ -3,7 +3,7 @@ import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
 import type { ChartSpec } from './chart_data';
 import { button, element } from './dom';
-import { dash, number } from './format';
+import { dash, number, short } from './format';
 import { onThemeChange, themeColor } from './theme';
 
 const height = 260;
@@ -15,18 +15,18 @@ function valueText(spec: ChartSpec, value: number | null | undefined): string {
   return spec.yShare ? `${(100 * value).toFixed(2)} %` : number(value);
 }
 
-function axis(label: string, share: boolean): uPlot.Axis {
-  const percentText = (value: number) => `${Number((100 * value).toPrecision(6))} %`;
+function axis(label: string, size: number, share: boolean): uPlot.Axis {
+  const percentText = (value: number) => `${short(100 * value)} %`;
   return {
     label,
     labelFont: font,
     font,
     labelSize: 22,
-    size: share ? 52 : 46,
+    size,
     stroke: () => themeColor('muted'),
     grid: { stroke: () => themeColor('grid'), width: 1 },
     ticks: { stroke: () => themeColor('grid'), width: 1 },
-    values: (_, splits) => splits.map((value) => (share ? percentText(value) : String(Number(value.toPrecision(6))))),
+    values: (_, splits) => splits.map((value) => (share ? percentText(value) : short(value))),
   };
 }
 
@@ -74,7 +74,7 @@ function makeReadout(spec: ChartSpec): { node: HTMLElement; show: (chart: uPlot)
   const show = (chart: uPlot) => {
     const index = chart.cursor.idx;
     const known = index !== null && index !== undefined;
-    place.textContent = known ? `at ${number(spec.x[index])}` : '';
+    place.textContent = known ? `at ${short(spec.x[index])}` : '';
     values.forEach((node, i) => (node.textContent = known ? valueText(spec, spec.series[i].values[index]) : ''));
   };
   return { node: element('div', { class: 'chart-legend', 'aria-live': 'polite' }, ...items, place), show };
@@ -104,7 +104,7 @@ function makePlot(spec: ChartSpec, place: HTMLElement, show: (chart: uPlot) => v
       x: { time: false, min: low, max: spec.xEnd },
       y: { range: (_, __, max) => [0, spec.kind === 'steps' || !spec.yShare ? max * 1.08 || 1 : 1] },
     },
-    axes: [axis(spec.xLabel, false), axis(spec.yLabel, spec.yShare)],
+    axes: [axis(spec.xLabel, 34, false), axis(spec.yLabel, 54, spec.yShare)],
     series: [{}, ...series(spec)],
     cursor: { points: { size: 7 }, y: false },
     hooks: { setCursor: [show], draw: [drawMark(spec)] },

@@ -16,6 +16,11 @@ export function number(value: number): string {
   return size >= 1e4 ? grouped.format(Math.round(value)) : value.toFixed(decimals);
 }
 
+/** Parameters and ends of axes: no digits that say nothing. */
+export function short(value: number): string {
+  return String(Number(value.toPrecision(6)));
+}
+
 /** As short as it can be without losing anything. */
 export function exact(value: number): string {
   return String(value);

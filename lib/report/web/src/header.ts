@@ -21,10 +21,13 @@ function inputBlock(role: string, input: InputRecord): HTMLElement {
     { class: 'input', 'data-input': role },
     element('h2', {}, role),
     element('p', { class: 'file', title: input.path }, baseName(input.path)),
-    element('p', {}, `${pointsText(input)}, ${colorText[input.color] ?? input.color}`),
-    element('p', {}, input.format),
-    element('p', { class: 'path' }, input.path),
-    element('p', {}, 'SHA-256 ', element('code', { title: input.sha256, tabindex: 0 }, input.sha256.slice(0, 12))),
+    element('p', {}, `${pointsText(input)}, ${colorText[input.color] ?? input.color}, ${input.format}`),
+    element(
+      'p',
+      { class: 'path' },
+      input.path,
+      element('span', { class: 'hash' }, 'SHA-256 ', element('code', { title: input.sha256 }, input.sha256.slice(0, 12))),
+    ),
   );
 }
 

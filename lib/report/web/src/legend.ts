@@ -2,7 +2,7 @@
 import { colorMapNames, colorTable, noValueColor } from './color_maps';
 import type { ClassLayer, Layer, ScalarLayer } from './contract';
 import { button, element, rgb } from './dom';
-import { exact, number, percent, unitText } from './format';
+import { exact, percent, short, unitText } from './format';
 import { classShares, isClasses, isScalar, type ScalarStyle, sharesOutside } from './layers';
 import { type PointMap, pointColor } from './point_map';
 
@@ -88,7 +88,7 @@ function colorBar(map: PointMap, layer: ScalarLayer, style: ScalarStyle): HTMLEl
   bar.style.background = gradient(style.colorMap);
   const [low, high] = style.range;
   const ends = [low, (low + high) / 2, high].map((value) =>
-    element('span', { 'data-value': exact(value) }, number(value)),
+    element('span', { 'data-value': exact(value) }, short(value)),
   );
   return element(
     'div',

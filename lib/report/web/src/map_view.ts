@@ -144,19 +144,39 @@ function fillLayers(view: View): void {
   });
 }
 
-/** Bounds of the middle of all maps, relative to the center of the scene. */
-function centralBox(maps: PointMap[]): { min: number[]; max: number[]; center: Vector } {
-  const bounds = maps.map(centralBounds);
-  const min = [0, 1, 2].map((k) => Math.min(...bounds.map((box) => box.min[k])));
-  const max = [0, 1, 2].map((k) => Math.max(...bounds.map((box) => box.max[k])));
-  const center = min.map((low, k) => (low + max[k]) / 2) as Vector;
-  return { min: min.map((v, k) => v - center[k]), max: max.map((v, k) => v - center[k]), center };
+interface Box {
+  min: number[];
+  max: number[];
 }
 
-function setUpView(view: View, box: { min: number[]; max: number[] }): void {
+/** Bounds of the middle of all maps. */
+function centralBox(maps: PointMap[]): Box {
+  const bounds = maps.map(centralBounds);
+  return {
+    min: [0, 1, 2].map((k) => Math.min(...bounds.map((box) => box.min[k]))),
+    max: [0, 1, 2].map((k) => Math.max(...bounds.map((box) => box.max[k]))),
+  };
+}
+
+/** Some points of all maps within the box, relative to the center of the scene: what the first view is to show. */
+function samplePoints(clouds: Cloud[], box: Box, center: Vector): number[] {
+  const wanted = 4000;
+  const sample: number[] = [];
+  for (const { positions } of clouds) {
+    const stride = 3 * Math.max(1, Math.floor(positions.length / 3 / wanted));
+    for (let i = 0; i < positions.length; i += stride) {
+      const point = positions.subarray(i, i + 3);
+      const inside = point.every((value, k) => value + center[k] >= box.min[k] && value + center[k] <= box.max[k]);
+      if (inside) sample.push(...point);
+    }
+  }
+  return sample;
+}
+
+function setUpView(view: View, sample: number[]): void {
   const { scene, parts } = view;
   const look = (angles: typeof oblique) => {
-    scene.orbit = fit(angles, box, scene.aspect());
+    scene.orbit = fit(angles, sample, scene.aspect());
     scene.request();
   };
   const keys: Record<string, () => void> = {
@@ -196,7 +216,7 @@ function turnAbout(view: View, x: number, y: number): void {
 
 function followPointSize(view: View): void {
   const { size } = view.parts;
-  const base = Math.max(...view.scene.clouds.map((cloud) => spacing(cloud.map)));
+  const base = 1.3 * Math.max(...view.scene.clouds.map((cloud) => spacing(cloud.map)));
   const apply = () => {
     view.scene.diameter = base * 2 ** size.valueAsNumber;
     view.scene.request();
@@ -223,7 +243,8 @@ export function showMap(section: HTMLElement, page: Page, maps: PointMap[]): Pro
   if (layers.length === 0) throw new Error('This page holds no layer of the map.');
   const parts = makeParts();
   const box = centralBox(maps);
-  const scene = makeScene(parts.canvas, maps, box.center);
+  const center = box.min.map((low, k) => (low + box.max[k]) / 2) as Vector;
+  const scene = makeScene(parts.canvas, maps, center);
   if (!scene) {
     section.append(message('The map needs WebGL 2, which this browser does not offer here. Everything else works.'));
     return Promise.resolve();
@@ -234,6 +255,6 @@ export function showMap(section: HTMLElement, page: Page, maps: PointMap[]): Pro
   showLayer(view, layers[0]);
   followPointSize(view);
   followPage(view);
-  setUpView(view, box);
+  setUpView(view, samplePoints(scene.clouds, box, center));
   return new Promise((resolve) => scene.onDraw(() => requestAnimationFrame(() => resolve())));
 }

@@ -36,23 +36,28 @@ export function eye(orbit: Orbit): Vector {
   return orbit.target.map((value, k) => value + orbit.distance * back[k]) as Vector;
 }
 
-/** The orbit from these angles at which a box just fills a picture of this aspect. */
-export function fit(
-  angles: { azimuth: number; elevation: number },
-  box: { min: number[]; max: number[] },
-  aspect: number,
-): Orbit {
+/**
+ * The orbit from these angles from which the points (x y z of one after the other) just fill a picture of this aspect.
+ * A point shows where its offset across is within the tangent times its depth: that bounds the distance by the
+ * largest sums of both, to each side, and the middle of two sides is where they weigh the same.
+ */
+export function fit(angles: { azimuth: number; elevation: number }, points: ArrayLike<number>, aspect: number): Orbit {
   const axes = basis(angles);
-  const target = box.min.map((low, k) => (low + box.max[k]) / 2) as Vector;
-  const tangent = Math.tan(fieldOfView / 2);
-  let distance = 0;
-  for (let corner = 0; corner < 8; ++corner) {
-    const offset = target.map((value, k) => ((corner >> k) & 1 ? box.max[k] : box.min[k]) - value) as Vector;
-    const across = Math.abs(dot(offset, axes.right)) / (tangent * aspect);
-    const along = Math.abs(dot(offset, axes.up)) / tangent;
-    distance = Math.max(distance, dot(offset, axes.back) + Math.max(across, along));
+  const down = Math.tan(fieldOfView / 2);
+  const across = down * aspect;
+  let [left, right, low, high] = [-Infinity, -Infinity, -Infinity, -Infinity];
+  for (let i = 0; i < points.length; i += 3) {
+    const point: Vector = [points[i], points[i + 1], points[i + 2]];
+    const [x, y, z] = [dot(point, axes.right), dot(point, axes.up), dot(point, axes.back)];
+    left = Math.max(left, across * z - x);
+    right = Math.max(right, across * z + x);
+    low = Math.max(low, down * z - y);
+    high = Math.max(high, down * z + y);
   }
-  return { ...angles, target, distance: distance * 1.02 || 1 };
+  const [x, y] = [(right - left) / 2, (high - low) / 2];
+  const distance = 1.04 * Math.max((left + right) / (2 * across), (low + high) / (2 * down));
+  const target = axes.right.map((value, k) => x * value + y * axes.up[k]) as Vector;
+  return { ...angles, target, distance: distance > 0 ? distance : 1 };
 }
 
 export function turn(orbit: Orbit, right: number, up: number): void {

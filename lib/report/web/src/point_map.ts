@@ -45,21 +45,30 @@ export function pointColor({ values }: PointMap, index: number): number[] | unde
   return planes.every((plane) => plane) ? planes.map((plane) => plane![index]) : undefined;
 }
 
-/** Bounds of the middle 99 % of the points along each axis. */
+/**
+ * Bounds of the map without outliers along each axis: the middle 90 % and a quarter of that more on both sides, but
+ * never more than the middle 99 %. More than a hundredth of a map may be stray points, all on one side.
+ */
 export function centralBounds(map: PointMap): { min: number[]; max: number[] } {
-  const quantiles = axes.map((axis, k) => {
+  const bounds = axes.map((axis, k) => {
     const counts = new Uint32Array(65536);
     const values = map.values.get(axis)!;
     for (const value of values) ++counts[value];
-    const rank = (share: number) => {
-      let left = share * values.length;
-      let value = 0;
-      while (value < 65535 && left >= counts[value]) left -= counts[value++];
-      return map.text.origin_m[k] + value * map.text.step_m[k];
-    };
-    return [rank(0.005), rank(0.995)];
+    const [first, low, high, last] = quantiles(counts, values.length, [0.005, 0.05, 0.95, 0.995]);
+    const margin = (high - low) / 4;
+    const world = (value: number) => map.text.origin_m[k] + value * map.text.step_m[k];
+    return [world(Math.max(first, low - margin)), world(Math.min(last, high + margin))];
   });
-  return { min: quantiles.map((pair) => pair[0]), max: quantiles.map((pair) => pair[1]) };
+  return { min: bounds.map((pair) => pair[0]), max: bounds.map((pair) => pair[1]) };
+}
+
+function quantiles(counts: Uint32Array, total: number, shares: number[]): number[] {
+  return shares.map((share) => {
+    let left = share * total;
+    let value = 0;
+    while (value < counts.length - 1 && left >= counts[value]) left -= counts[value++];
+    return value;
+  });
 }
 
 /** Typical distance of neighbors: points come in Hilbert order, where the next one is mostly close. */

@@ -1,6 +1,6 @@
 // The metrics of a report as rows of a table: one per value, so that of per-threshold metrics one per threshold.
 import type { Json, JsonValue, MetricText, Page, Report } from './contract';
-import { number, withUnit } from './format';
+import { short, withUnit } from './format';
 
 export interface MetricRow {
   metric: MetricText;
@@ -47,7 +47,7 @@ function entries(record: Json): { entry: Json; qualifier: string; key: Record<st
   if (Array.isArray(record.per_threshold)) {
     return (record.per_threshold as Json[]).map((entry) => ({
       entry,
-      qualifier: withUnit(number(entry.threshold_m as number), 'm'),
+      qualifier: withUnit(short(entry.threshold_m as number), 'm'),
       key: { threshold: String(entry.threshold_m) },
     }));
   }

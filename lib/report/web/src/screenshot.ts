@@ -2,7 +2,7 @@
 import { colorTable } from './color_maps';
 import type { Layer } from './contract';
 import { rgb, saveBlob } from './dom';
-import { number, unitText } from './format';
+import { short, unitText } from './format';
 import { isClasses, isScalar, type ScalarStyle } from './layers';
 import type { Scene } from './scene';
 import { themeColor } from './theme';
@@ -11,7 +11,7 @@ type Pen = CanvasRenderingContext2D;
 
 function drawBar(pen: Pen, style: ScalarStyle, unit: string, x: number, y: number, em: number): void {
   const table = colorTable(style.colorMap);
-  const [low, high] = style.range.map((value) => number(value));
+  const [low, high] = style.range.map((value) => short(value));
   pen.fillText(low, x, y);
   const left = x + pen.measureText(low).width + em / 2;
   const cell = (12 * em) / 256;

@@ -40,10 +40,11 @@ export function describe(anchor: HTMLElement, text: string, id: string): HTMLEle
   anchor.setAttribute('aria-describedby', id);
   anchor.addEventListener('focus', () => anchor.matches(':focus-visible') && show(anchor, text));
   anchor.addEventListener('blur', hide);
+  anchor.addEventListener('click', hide);
   anchor.addEventListener('pointerenter', (event) => {
     if (event.pointerType === 'touch') return;
     clearTimeout(timer);
-    timer = setTimeout(() => show(anchor, text), delay);
+    if (anchor.getAttribute('aria-expanded') !== 'true') timer = setTimeout(() => show(anchor, text), delay);
   });
   anchor.addEventListener('pointerleave', hideSoon);
   return description;
