@@ -92,7 +92,7 @@ function cumulative(distribution: Distribution, xEnd: number): ChartSpec {
   return {
     id: `${distribution.id}-cumulative`,
     title: `${distribution.title}, cumulative`,
-    note: directions.map((d) => `${medianText(d, bin_width, unit)} (${d.title})`).join(', '),
+    note: directions.map((d) => `${medianText(d, bin_width, unit)} (${d.title})`).join('. '),
     xLabel: axisLabel(distribution.id, unit),
     yLabel: 'share at or below',
     kind: 'line',
@@ -105,7 +105,7 @@ function cumulative(distribution: Distribution, xEnd: number): ChartSpec {
 
 function medianText(direction: Direction, width: number, unit: string): string {
   const median = quantile(direction, 0.5, width);
-  return median === undefined ? 'half beyond the axis' : `half within ${withUnit(short(median), unit)}`;
+  return median === undefined ? 'Half beyond all bins' : `Half within ${withUnit(short(median), unit)}`;
 }
 
 function recallCurve(record: Json | undefined): ChartSpec[] {

@@ -55,7 +55,7 @@ export function fit(angles: { azimuth: number; elevation: number }, points: Arra
     high = Math.max(high, down * z + y);
   }
   const [x, y] = [(right - left) / 2, (high - low) / 2];
-  const distance = 1.04 * Math.max((left + right) / (2 * across), (low + high) / (2 * down));
+  const distance = 1.1 * Math.max((left + right) / (2 * across), (low + high) / (2 * down));
   const target = axes.right.map((value, k) => x * value + y * axes.up[k]) as Vector;
   return { ...angles, target, distance: distance > 0 ? distance : 1 };
 }

@@ -21,7 +21,13 @@ function without(record: Json, ...names: string[]): Json {
   return Object.fromEntries(Object.entries(record).filter(([name]) => !names.includes(name)));
 }
 
-/** Seconds of each stage, as bars of their shares. */
+function bar(share: number): HTMLElement {
+  const made = element('div', { class: 'share', 'aria-hidden': 'true' });
+  made.style.width = `${100 * share}%`;
+  return made;
+}
+
+/** Seconds of each stage, with bars to compare them. */
 function stageTable(stages: JsonValue | undefined): HTMLElement | undefined {
   const entries = Object.entries((stages ?? {}) as Record<string, number>);
   if (entries.length === 0) return undefined;
@@ -32,7 +38,7 @@ function stageTable(stages: JsonValue | undefined): HTMLElement | undefined {
       {},
       element('th', { scope: 'row' }, name),
       element('td', { class: 'number', title: exact(seconds) }, `${number(seconds)} s`),
-      element('td', {}, element('meter', { min: 0, max: largest, value: seconds, 'aria-hidden': 'true' })),
+      element('td', { class: 'bars' }, largest > 0 ? bar(seconds / largest) : undefined),
     ),
   );
   return element('table', { class: 'stages' }, element('caption', {}, 'Time by stage'), element('tbody', {}, ...rows));

@@ -1,7 +1,7 @@
 // The table of metrics: sortable by each column, every row with its definition, counts and parameters.
 import type { JsonValue } from './contract';
 import { element } from './dom';
-import { dash, exact, number, unitText } from './format';
+import { count, dash, exact, number, short, unitText } from './format';
 import type { MetricRow } from './records';
 import { describe } from './tooltip';
 
@@ -46,7 +46,7 @@ const arrows: Record<string, string> = { lower: '↓', higher: '↑' };
 
 function factText(value: JsonValue): string {
   if (Array.isArray(value)) return value.map(factText).join(', ') || 'none';
-  if (typeof value === 'number') return number(value);
+  if (typeof value === 'number') return Number.isInteger(value) ? count(value) : short(value);
   return value === null ? dash : String(value);
 }
 
@@ -94,7 +94,6 @@ function tableRows(row: MetricRow): HTMLTableRowElement[] {
   const { metric } = row;
   const data = Object.fromEntries(Object.entries(row.key).map(([name, value]) => [`data-${name}`, value]));
   const details = detailRow(row, `details-${row.order}`);
-  const better = metric.better && `${arrows[metric.better] ?? ''} ${metric.better}`;
   const shown = element(
     'tr',
     { 'data-metric': metric.id, ...data, class: row.first ? 'metric first' : 'metric' },
@@ -102,7 +101,12 @@ function tableRows(row: MetricRow): HTMLTableRowElement[] {
     metricCell(row, details),
     valueCell(row),
     element('td', { class: 'unit' }, unitText(metric.unit)),
-    element('td', { class: 'better' }, better),
+    element(
+      'td',
+      { class: 'better', title: metric.better },
+      element('span', { 'aria-hidden': 'true' }, arrows[metric.better] ?? ''),
+      element('span', { class: 'word' }, ` ${metric.better}`),
+    ),
     element('td', { class: 'group' }, metric.group),
   );
   return [shown, details];
