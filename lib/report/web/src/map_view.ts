@@ -11,6 +11,7 @@ import { centralBounds, type PointMap, spacing } from './point_map';
 import { readout } from './readout';
 import { type Cloud, makeScene, type Scene } from './scene';
 import { saveScreenshot } from './screenshot';
+import { factList } from './table';
 import { onThemeChange, themeColor } from './theme';
 
 interface View {
@@ -27,7 +28,7 @@ type Parts = ReturnType<typeof makeParts>;
 const keyHelp: [string, string][] = [
   ['1 to 9', 'layer'],
   ['drag, arrow keys', 'turn'],
-  ['right drag, Shift + drag, Shift + arrow keys, two fingers', 'move'],
+  ['right drag, Shift + drag or arrow keys, two fingers', 'move'],
   ['wheel, pinch, + and −', 'zoom'],
   ['double click', 'turn about that point'],
   ['click, Enter', 'read a point'],
@@ -36,9 +37,7 @@ const keyHelp: [string, string][] = [
 ];
 
 function keyTable(): HTMLElement {
-  const list = element('dl', { class: 'facts keys' });
-  for (const [keys, action] of keyHelp) list.append(element('dt', {}, keys), element('dd', {}, action));
-  return element('details', { class: 'help' }, element('summary', {}, 'Keys and mouse'), list);
+  return element('details', { class: 'help' }, element('summary', {}, 'Keys and mouse'), factList(keyHelp));
 }
 
 function makeParts() {
@@ -51,6 +50,7 @@ function makeParts() {
       'aria-describedby': 'readout',
     }),
     marker: element('div', { class: 'marker', hidden: true, 'aria-hidden': 'true' }),
+    name: element('h3'),
     legend: element('div', { id: 'legend' }),
     readout: element('div', { id: 'readout', 'aria-live': 'polite' }),
     size: element('input', { type: 'range', min: -2, max: 2, step: 0.1, value: 0, id: 'point-size' }),
@@ -60,21 +60,25 @@ function makeParts() {
 }
 
 function layout(section: HTMLElement, parts: Parts): void {
+  const controls = element(
+    'div',
+    { class: 'controls' },
+    element('h3', {}, 'View'),
+    element('label', { class: 'field' }, 'Point size', parts.size),
+    parts.actions,
+  );
   const panel = element(
     'div',
     { class: 'panel' },
-    element('h3', {}, 'Legend'),
+    parts.name,
     parts.legend,
     parts.shown,
     element('h3', {}, 'Point'),
     parts.readout,
-    element('h3', {}, 'View'),
-    element('label', { class: 'field' }, 'Point size', parts.size),
-    parts.actions,
-    keyTable(),
+    controls,
   );
   const stage = element('div', { class: 'stage' }, parts.canvas, parts.marker);
-  section.append(parts.layers, element('div', { class: 'map-grid' }, stage, panel));
+  section.append(parts.layers, element('div', { class: 'map-grid' }, stage, panel), keyTable());
 }
 
 function shownText({ text }: PointMap): string {
@@ -123,6 +127,7 @@ function showLayer(view: View, layer: Layer): void {
   view.scene.show(cloud);
   repaint(view);
   showPicked(view, sameMap ? view.picked : undefined);
+  view.parts.name.textContent = layer.title;
   view.parts.shown.textContent = shownText(cloud.map);
   const input = view.parts.layers.querySelector<HTMLInputElement>(`input[value="${CSS.escape(layer.id)}"]`);
   if (input) input.checked = true;

@@ -46,16 +46,16 @@ function stageTable(stages: JsonValue | undefined): HTMLElement | undefined {
 
 export function showRun(section: HTMLElement, report: Report): void {
   const { parameters, alignment, run, aliases } = report;
-  section.append(
-    element(
-      'details',
-      {},
-      element('summary', {}, element('h2', { id: 'run-title' }, 'Parameters and run')),
-      block('Command', element('pre', {}, String(run.command ?? ''))),
-      block('Parameters', factList(Object.entries(parameters))),
-      block('Alignment', factList(flatten(without(alignment, 'T_ref_est'))), matrix(alignment.T_ref_est)),
-      block('Run', factList(flatten(without(run, 'command', 'stages'))), stageTable(run.stages)),
-      aliases && block('Other tools on this pair', factList(flatten(aliases))),
-    ),
+  const details = element(
+    'details',
+    {},
+    element('summary', {}, element('h2', { id: 'run-title' }, 'Parameters and run')),
+    block('Command', element('pre', {}, String(run.command ?? ''))),
+    block('Parameters', factList(Object.entries(parameters))),
+    block('Alignment', factList(flatten(without(alignment, 'T_ref_est'))), matrix(alignment.T_ref_est)),
+    block('Run', factList(flatten(without(run, 'command', 'stages'))), stageTable(run.stages)),
+    aliases && block('Other tools on this pair', factList(flatten(aliases))),
   );
+  addEventListener('beforeprint', () => (details.open = true)); // a sheet of paper cannot be unfolded
+  section.append(details);
 }

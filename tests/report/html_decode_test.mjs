@@ -1,0 +1,95 @@
+// The decoder of the report page on examples worked out by hand: node html_decode_test.mjs
+// Needs `npm ci` in lib/report/web.
+import assert from 'node:assert/strict';
+import { createRequire } from 'node:module';
+import { test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+
+const web = new URL('../../lib/report/web/', import.meta.url);
+const { build } = createRequire(new URL('package.json', web))('esbuild');
+
+async function load(path) {
+  const built = await build({ entryPoints: [fileURLToPath(new URL(path, web))], bundle: true, write: false, format: 'esm' });
+  return import(`data:text/javascript;base64,${Buffer.from(built.outputFiles[0].contents).toString('base64')}`);
+}
+
+const { bytesOfBase64, decodePlanes, gunzip } = await load('src/decode.ts');
+const { coordinateDecimals, fieldValue, worldPoint } = await load('src/point_map.ts');
+const { colorIndex } = await load('src/layers.ts');
+const { basis, dot, eye, fieldOfView, fit } = await load('src/orbit.ts');
+
+const plane = (field, type) => ({ field, type });
+
+test('bytes: differences, zig-zag, modulo 256', () => {
+  // 5, 3, 255, 0: differences 5, -2, 252 = -4, 1; zig-zag 10, 3, 7, 2.
+  const bytes = Uint8Array.of(10, 3, 7, 2);
+  const [map] = decodePlanes(bytes, [{ points: 4, planes: [plane('r', 'u8')] }]);
+  assert.deepEqual([...map.get('r')], [5, 3, 255, 0]);
+});
+
+test('words: low bytes, then high bytes, modulo 65536', () => {
+  // 300, 298, 65535, 0, 32768: differences 300, -2, -299, 1, -32768; zig-zag 600, 3, 597, 2, 65535.
+  const codes = [600, 3, 597, 2, 65535];
+  const bytes = Uint8Array.from([...codes.map((code) => code & 255), ...codes.map((code) => code >> 8)]);
+  const [map] = decodePlanes(bytes, [{ points: 5, planes: [plane('x', 'u16')] }]);
+  assert.deepEqual([...map.get('x')], [300, 298, 65535, 0, 32768]);
+});
+
+test('planes follow each other, maps too, and each starts anew', () => {
+  const maps = [
+    { points: 2, planes: [plane('x', 'u16'), plane('r', 'u8')] },
+    { points: 1, planes: [plane('lcr', 'u8')] },
+  ];
+  // x: 1, 1 -> 2, 0; low bytes 2 0, high bytes 0 0. r: 7, 6 -> 14, 1. lcr: 2 -> 4.
+  const [first, second] = decodePlanes(Uint8Array.of(2, 0, 0, 0, 14, 1, 4), maps);
+  assert.deepEqual([...first.get('x')], [1, 1]);
+  assert.deepEqual([...first.get('r')], [7, 6]);
+  assert.deepEqual([...second.get('lcr')], [2]);
+});
+
+test('too few or too many bytes are refused', () => {
+  const maps = [{ points: 2, planes: [plane('x', 'u16')] }];
+  assert.throws(() => decodePlanes(new Uint8Array(3), maps), /3 bytes of points where 4 were expected/);
+  assert.throws(() => decodePlanes(new Uint8Array(5), maps), /5 bytes/);
+});
+
+test('base64 and gzip', async () => {
+  // printf abc | gzip -n | base64
+  assert.deepEqual(await gunzip(bytesOfBase64('H4sIAAAAAAAAA0tMSgYAwkEkNQMAAAA=')), Uint8Array.of(97, 98, 99));
+});
+
+test('coordinates and fields of a point', () => {
+  const text = { origin_m: [500000, 4000000, -2], step_m: [0.001, 0.002, 0.5], planes: [{ field: 'distance', max: 8 }] };
+  const word = (value) => Uint16Array.of(value);
+  const values = new Map([['x', word(250)], ['y', word(1000)], ['z', word(3)], ['distance', word(65535)]]);
+  const map = { text, values };
+  assert.deepEqual(worldPoint(map, 0), [500000.25, 4000002, -0.5]);
+  assert.equal(fieldValue(map, 'z')(0), -0.5, 'z is the height in meters');
+  assert.equal(fieldValue(map, 'distance')(0), 8, 'the largest code is the largest value');
+  values.set('distance', word(13107)); // a fifth: 1/25 of the largest value
+  assert.ok(Math.abs(fieldValue(map, 'distance')(0) - 0.32) < 1e-12);
+  assert.equal(fieldValue(map, 'lcr'), undefined, 'no such plane');
+  assert.equal(coordinateDecimals(map), 3);
+});
+
+test('places in a color map', () => {
+  const range = [1, 3];
+  assert.deepEqual([0, 1, 2, 2.999, 3, 4].map((value) => colorIndex(value, range)), [0, 0, 128, 255, 255, 255]);
+  assert.equal(colorIndex(NaN, range), -1);
+  assert.deepEqual([1, 2, 3].map((value) => colorIndex(value, [2, 2])), [0, 0, 255], 'an empty range is a step');
+});
+
+test('the first view holds all points and has them in its middle', () => {
+  const points = [-3, 0, 0, 5, 1, 0, 0, 9, 2, 1, -4, 7];
+  for (const [azimuth, elevation] of [[-1, 0.7], [2, 1.5], [-Math.PI / 2, Math.PI / 2]]) {
+    const orbit = fit({ azimuth, elevation }, points, 1.5);
+    const { right, up, back } = basis(orbit);
+    const places = [0, 3, 6, 9].map((i) => {
+      const offset = eye(orbit).map((value, k) => points[i + k] - value);
+      const depth = -dot(offset, back) * Math.tan(fieldOfView / 2);
+      return [dot(offset, right) / depth / 1.5, dot(offset, up) / depth];
+    });
+    const reach = Math.max(...places.flat().map(Math.abs));
+    assert.ok(reach <= 1 && reach > 0.75, `points reach ${reach} of the way to the edge`);
+  }
+});
