@@ -180,6 +180,40 @@ test('the keyboard turns, moves and zooms the map', async () => {
   assert.ok(difference(first, await pixels(canvas())) < 0.001, 'r does not go back to the first view');
 });
 
+test('mouse and fingers turn, move and zoom the map', async () => {
+  await page.locator('[data-action=first-view]').click(); // the canvas without its focus ring
+  const first = await pixels(canvas());
+  const box = await canvas().boundingBox();
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  const drag = (button) => async () => {
+    await page.mouse.move(x, y);
+    await page.mouse.down({ button });
+    await page.mouse.move(x + 60, y + 20, { steps: 3 });
+    await page.mouse.up({ button });
+  };
+  const touch = await page.context().newCDPSession(page);
+  const pinch = async () => {
+    const fingers = (apart) => [{ x: x - apart, y, id: 0 }, { x: x + apart, y, id: 1 }];
+    await touch.send('Input.dispatchTouchEvent', { type: 'touchStart', touchPoints: fingers(40) });
+    await touch.send('Input.dispatchTouchEvent', { type: 'touchMove', touchPoints: fingers(90) });
+    await touch.send('Input.dispatchTouchEvent', { type: 'touchEnd', touchPoints: [] });
+  };
+  const wheel = async () => {
+    await page.waitForTimeout(300); // a page that has just been scrolled goes on scrolling
+    await page.mouse.wheel(0, -240);
+    await page.waitForTimeout(100);
+  };
+  const actions = { turn: drag('left'), move: drag('right'), wheel, pinch };
+  for (const [name, action] of Object.entries(actions)) {
+    const old = await pixels(canvas());
+    await action();
+    assert.ok(difference(old, await pixels(canvas())) > 0.005, `${name} leaves the picture as it was`);
+  }
+  assert.deepEqual(await readPoint(), {}, 'a drag picks no point');
+  await page.locator('[data-action=first-view]').click();
+  assert.ok(difference(first, await pixels(canvas())) < 0.001, 'the button goes back to the first view');
+});
+
 test('the map is drawn only when something changes', async () => {
   const frames = await page.evaluate(async () => {
     let asked = 0;
