@@ -270,7 +270,7 @@ async function checkAgainstLegend(id, point, color) {
     if (point.color) assert.deepEqual(point.color.split(' ').map(Number), color, `${id}: color of the point`);
     return;
   }
-  const field = { distance: 'distance', 'color-distance': 'color_distance', height: 'z' }[id];
+  const field = { distance: 'distance', 'color-distance': 'color_distance' }[id] ?? 'z';
   const value = Number(point[field]);
   assert.ok(Number.isFinite(value), `${id}: ${field} is ${point[field]}`);
   const bar = await pixels(page.locator('#legend .bar'));

@@ -1,6 +1,6 @@
 // What is known about a picked point.
 import type { Layer } from './contract';
-import { element, rgb } from './dom';
+import { element } from './dom';
 import { exact, number, withUnit } from './format';
 import { isClasses } from './layers';
 import { swatch } from './legend';
@@ -61,9 +61,8 @@ export function readout(map: PointMap, layers: Layer[], index: number | undefine
   ];
   const list = element('dl', { class: 'facts' });
   for (const { field, label, value, text, color } of rows) {
-    const shown = element('dd', { 'data-field': field, 'data-value': value, title: value }, color && swatch(color), text);
-    if (color) shown.dataset.color = rgb(color);
-    list.append(element('dt', {}, label), shown);
+    const data = { 'data-field': field, 'data-value': value, title: value };
+    list.append(element('dt', {}, label), element('dd', data, color && swatch(color), text));
   }
-  return [element('p', { class: 'note' }, `${map.text.title}`), list];
+  return [element('p', { class: 'note' }, map.text.title), list];
 }
