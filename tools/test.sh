@@ -4,9 +4,9 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-tools/install_dependencies.sh
+tools/install_dependencies.sh --tests
 echo "Configuring build/release"
-tools/quietly.sh cmake --preset release
+tools/quietly.sh cmake --preset release -DCMAP_BUILD_WEB=ON
 echo "Building build/release"
 tools/quietly.sh cmake --build --preset release --parallel "$(nproc)"
 exec ctest --preset release --no-tests=error --output-on-failure --parallel "$(nproc)" "$@"

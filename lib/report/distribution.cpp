@@ -9,7 +9,7 @@
 namespace cmap {
 namespace {
 
-constexpr std::size_t kBins = 200;
+constexpr std::size_t kBins = 500;
 
 Array<double> errors_of(const NearestPairs& pairs, PairError error) {
   Array<double> errors(pairs.size());

@@ -19,12 +19,12 @@ TEST(Distribution, HandComputed) {
   const test::Clouds clouds{test::cloud_of({{0, 0, 0}, {50, 0, 0}, {0, 50, 0}}),
                             test::cloud_of({{0, 0, 0.125f}, {50, 0, 0.375f}, {0, 50, 2}})};
   const Distribution found = distribution_of(clouds.pair(), &NearestPairs::distance_m);
-  // The 99th percentile, 1.9675, lies below 2; its round number 2 is divided by 200 bins.
-  EXPECT_EQ(found.bin_width, 0.01);
+  // The 99th percentile, 1.9675, lies below 2; its round number 2 is divided by 500 bins.
+  EXPECT_EQ(found.bin_width, 0.004);
   for (const DirectedDistribution& d : {found.estimate_to_reference, found.reference_to_estimate}) {
-    ASSERT_EQ(d.counts.size(), 200u);
-    EXPECT_EQ(d.counts[12], 1u);
-    EXPECT_EQ(d.counts[37], 1u);
+    ASSERT_EQ(d.counts.size(), 500u);
+    EXPECT_EQ(d.counts[31], 1u);
+    EXPECT_EQ(d.counts[93], 1u);
     EXPECT_EQ(d.n_beyond, 1u) << "2 m is where the last bin ends";
     EXPECT_EQ(total(d), 3u);
     EXPECT_DOUBLE_EQ(d.p95, 0.375 + 0.9 * (2.0 - 0.375));

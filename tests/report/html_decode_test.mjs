@@ -1,11 +1,13 @@
 // The decoder of the report page on examples worked out by hand: node html_decode_test.mjs
-// Needs `npm ci` in lib/report/web.
+// Needs `npm ci` in lib/report/web or a copy of it (CMAP_WEB_FOLDER).
 import assert from 'node:assert/strict';
 import { createRequire } from 'node:module';
 import { test } from 'node:test';
-import { fileURLToPath } from 'node:url';
+import { fileURLToPath, pathToFileURL } from 'node:url';
 
-const web = new URL('../../lib/report/web/', import.meta.url);
+const web = process.env.CMAP_WEB_FOLDER
+  ? pathToFileURL(`${process.env.CMAP_WEB_FOLDER}/`)
+  : new URL('../../lib/report/web/', import.meta.url);
 const { build } = createRequire(new URL('package.json', web))('esbuild');
 
 async function load(path) {
@@ -33,6 +35,13 @@ test('words: low bytes, then high bytes, modulo 65536', () => {
   const bytes = Uint8Array.from([...codes.map((code) => code & 255), ...codes.map((code) => code >> 8)]);
   const [map] = decodePlanes(bytes, [{ points: 5, planes: [plane('x', 'u16')] }]);
   assert.deepEqual([...map.get('x')], [300, 298, 65535, 0, 32768]);
+});
+
+test('three bytes: low, middle, high, modulo 2^24', () => {
+  // 70000, 0, 2^24 - 1: differences 70000, -70000, -1; zig-zag 140000 = 0x0222e0, 139999 = 0x0222df, 1.
+  const bytes = Uint8Array.of(0xe0, 0xdf, 1, 0x22, 0x22, 0, 0x02, 0x02, 0);
+  const [map] = decodePlanes(bytes, [{ points: 3, planes: [plane('x', 'u24')] }]);
+  assert.deepEqual([...map.get('x')], [70000, 0, 0xffffff]);
 });
 
 test('planes follow each other, maps too, and each starts anew', () => {

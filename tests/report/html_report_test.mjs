@@ -1,17 +1,36 @@
-// The HTML report in a real browser: node html_report_test.mjs REPORT.html REPORT.json
-// Needs `npm ci` in lib/report/web, and Chromium (CMAP_CHROMIUM, by default /usr/bin/chromium).
+// The HTML report in a real browser: node html_report_test.mjs [REPORT.html REPORT.json], by default the report that
+// CMAP_EVAL makes of the tum_fr1 pair, or of the town where that is absent. Needs `npm ci` in lib/report/web or a copy of
+// it (CMAP_WEB_FOLDER), and Chromium (CMAP_CHROMIUM, by default /usr/bin/chromium).
 import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { existsSync, mkdtempSync, rmSync } from 'node:fs';
 import { readFile } from 'node:fs/promises';
 import { createRequire } from 'node:module';
-import { resolve } from 'node:path';
+import { tmpdir } from 'node:os';
+import { join, resolve } from 'node:path';
 import { after, before, test } from 'node:test';
-import { pathToFileURL } from 'node:url';
+import { fileURLToPath, pathToFileURL } from 'node:url';
 
-const require = createRequire(new URL('../../lib/report/web/package.json', import.meta.url));
+const source = fileURLToPath(new URL('../../', import.meta.url));
+const web = process.env.CMAP_WEB_FOLDER ?? join(source, 'lib/report/web');
+const require = createRequire(join(web, 'package.json'));
 const { chromium } = require('playwright-core');
 
-const [htmlPath, jsonPath] = process.argv.slice(2);
-assert.ok(htmlPath && jsonPath, 'usage: node html_report_test.mjs REPORT.html REPORT.json');
+function makeReport() {
+  const program = process.env.CMAP_EVAL;
+  assert.ok(program, 'usage: node html_report_test.mjs REPORT.html REPORT.json, or set CMAP_EVAL');
+  const real = join(process.env.CMAP_DATA_DIR ?? join(source, '../shared/data'), 'tum_fr1');
+  const maps = existsSync(real) ? real : join(source, 'data_samples/town');
+  console.log(`# the pair of ${maps}`);
+  const folder = mkdtempSync(join(tmpdir(), 'cmap-html-'));
+  process.on('exit', () => rmSync(folder, { recursive: true }));
+  const [html, json] = ['report.html', 'report.json'].map((name) => join(folder, name));
+  const pair = ['reference.ply', 'estimate.ply'].map((name) => join(maps, name));
+  execFileSync(program, [...pair, '--metrics', 'all', '--html', html, '-o', json, '--quiet']);
+  return [html, json];
+}
+
+const [htmlPath, jsonPath] = process.argv.length > 2 ? process.argv.slice(2) : makeReport();
 const url = pathToFileURL(resolve(htmlPath)).href;
 const reportText = await readFile(jsonPath, 'utf8');
 const report = JSON.parse(reportText);

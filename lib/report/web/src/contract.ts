@@ -54,7 +54,7 @@ export interface Distribution {
 
 export interface Plane {
   field: string;
-  type: 'u8' | 'u16';
+  type: 'u8' | 'u16' | 'u24';
   max?: number;
   unit?: string;
 }

@@ -1,32 +1,27 @@
-// Planes of the maps: zig-zag coded differences, u16 as all low bytes and then all high bytes.
+// Planes of the maps: zig-zag coded differences, one run for each byte of a value, low bytes first.
 import type { Plane } from './contract';
 
-export type Values = Uint8Array | Uint16Array;
+export type Values = Uint8Array | Uint16Array | Uint32Array;
 
-function decodeBytes(bytes: Uint8Array, start: number, count: number): Uint8Array {
-  const values = new Uint8Array(count);
+const kinds = {
+  u8: { bytes: 1, Values: Uint8Array },
+  u16: { bytes: 2, Values: Uint16Array },
+  u24: { bytes: 3, Values: Uint32Array },
+};
+
+function decodePlane(bytes: Uint8Array, start: number, count: number, type: Plane['type']): Values {
+  const { bytes: size, Values } = kinds[type];
+  const values = new Values(count);
+  const mask = 2 ** (8 * size) - 1;
   let value = 0;
   for (let i = 0; i < count; ++i) {
-    const code = bytes[start + i];
-    value += (code >>> 1) ^ -(code & 1);
-    values[i] = value; // modulo 2^8, and so is the next sum
-  }
-  return values;
-}
-
-function decodeWords(bytes: Uint8Array, start: number, count: number): Uint16Array {
-  const values = new Uint16Array(count);
-  const high = start + count;
-  let value = 0;
-  for (let i = 0; i < count; ++i) {
-    const code = bytes[start + i] | (bytes[high + i] << 8);
-    value = (value + ((code >>> 1) ^ -(code & 1))) & 0xffff;
+    let code = 0;
+    for (let k = size - 1; k >= 0; --k) code = (code << 8) | bytes[start + k * count + i];
+    value = (value + ((code >>> 1) ^ -(code & 1))) & mask;
     values[i] = value;
   }
   return values;
 }
-
-const bytesPerValue = { u8: 1, u16: 2 };
 
 /** The planes of maps one after the other, by map and field. */
 export function decodePlanes(
@@ -35,15 +30,15 @@ export function decodePlanes(
 ): Map<string, Values>[] {
   let wanted = 0;
   for (const { points, planes } of maps) {
-    for (const plane of planes) wanted += points * bytesPerValue[plane.type];
+    for (const plane of planes) wanted += points * kinds[plane.type].bytes;
   }
   if (bytes.length !== wanted) throw new Error(`${bytes.length} bytes of points where ${wanted} were expected`);
   let at = 0;
   return maps.map(({ points, planes }) => {
     const values = new Map<string, Values>();
     for (const { field, type } of planes) {
-      values.set(field, (type === 'u8' ? decodeBytes : decodeWords)(bytes, at, points));
-      at += points * bytesPerValue[type];
+      values.set(field, decodePlane(bytes, at, points, type));
+      at += points * kinds[type].bytes;
     }
     return values;
   });
