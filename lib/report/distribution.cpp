@@ -1,6 +1,7 @@
 #include "report/distribution.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "cmap/core/parallel.hpp"
 #include "cmap/core/round_number.hpp"
@@ -31,7 +32,8 @@ DirectedDistribution binned(const Array<double>& errors, double bin_width, doubl
   const auto total = ordered_sum<Counts>(errors.size(), kLoopChunk, [&](std::size_t begin, std::size_t end) {
     Counts part;
     for (std::size_t i = begin; i < end; ++i) {
-      ++part.n[static_cast<std::size_t>(std::min(errors[i] / bin_width, static_cast<double>(kBins)))];
+      const double bin = std::max(std::ceil(errors[i] / bin_width) - 1.0, 0.0);
+      ++part.n[static_cast<std::size_t>(std::min(bin, static_cast<double>(kBins)))];
     }
     return part;
   });

@@ -9,7 +9,8 @@
 
 namespace cmap {
 
-/// Histogram of one direction: counts of [k w, (k + 1) w), and of what lies beyond the last bin.
+/// Histogram of one direction: counts of (k w, (k + 1) w], zero in the first, and of what lies beyond the last
+/// bin.
 struct DirectedDistribution {
   std::vector<std::uint64_t> counts;
   std::uint64_t n_beyond = 0;

@@ -65,11 +65,8 @@ Json definitions(const Evaluation& evaluation) {
   for (const MetricRecord& record : evaluation.metrics) {
     const MetricInfo& metric = *record.info;
     list.push_back({{"id", metric.id},
-                    {"symbol", metric.symbol},
                     {"title", metric.title},
                     {"group", metric.group},
-                    {"unit", metric.unit},
-                    {"better", metric.better},
                     {"definition", metric.definition}});
   }
   return list;

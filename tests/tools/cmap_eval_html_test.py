@@ -115,7 +115,7 @@ class Html(CmapEval):
             # A distance on an edge may fall to either side of it, by rounding: none does here.
             self.assertGreater(np.abs(values[:, None] - edges[None, ::20]).min(), 1e-12)
             np.testing.assert_array_equal(direction["counts"], np.histogram(values, edges)[0])
-            self.assertEqual(direction["beyond"], np.count_nonzero(values >= edges[-1]))
+            self.assertEqual(direction["beyond"], np.count_nonzero(values > edges[-1]))
 
     def test_the_same_bytes_for_any_number_of_threads(self):
         pages = [self.page_of(REFERENCE, ESTIMATE, "--threads", n) for n in "12"]

@@ -26,13 +26,11 @@ export interface Report {
   run: Json;
 }
 
+/** What the report does not say about a metric. */
 export interface MetricText {
   id: string;
-  symbol: string;
   title: string;
   group: string;
-  unit: string;
-  better: string;
   definition: string;
 }
 

@@ -2,8 +2,14 @@
 import type { Json, JsonValue, MetricText, Page, Report } from './contract';
 import { short, withUnit } from './format';
 
+export interface Metric extends MetricText {
+  symbol: string;
+  unit: string;
+  better: string;
+}
+
 export interface MetricRow {
-  metric: MetricText;
+  metric: Metric;
   /** Place in the report: what sorting falls back to. */
   order: number;
   /** First row of its metric. */
@@ -61,7 +67,7 @@ function entries(record: Json): { entry: Json; qualifier: string; key: Record<st
   return [{ entry: record, qualifier: '', key: {} }];
 }
 
-function describe(id: string, record: Json, page: Page | undefined): MetricText {
+function describe(id: string, record: Json, page: Page | undefined): Metric {
   const known = page?.metrics.find((metric) => metric.id === id);
   return {
     id,

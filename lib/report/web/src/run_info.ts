@@ -1,7 +1,7 @@
 // Parameters, alignment, the run, and what other tools would print.
 import type { Json, JsonValue, Report } from './contract';
 import { element } from './dom';
-import { exact, number } from './format';
+import { dash, exact, number, short } from './format';
 import { flatten } from './records';
 import { factList } from './table';
 
@@ -44,6 +44,39 @@ function stageTable(stages: JsonValue | undefined): HTMLElement | undefined {
   return element('table', { class: 'stages' }, element('caption', {}, 'Time by stage'), element('tbody', {}, ...rows));
 }
 
+function levelCell(name: string, value: JsonValue): HTMLElement {
+  if (typeof value !== 'number') return element('td', { class: 'number' }, dash);
+  return element('td', { class: 'number', title: exact(value) }, name === 'threshold_m' ? short(value) : number(value));
+}
+
+/** One row per threshold, one column per number. */
+function levelTable(levels: Json[]): HTMLElement {
+  const names = Object.keys(levels[0]);
+  const title = (name: string) => (name === 'threshold_m' ? 'threshold [m]' : name.replaceAll('_', ' '));
+  const head = names.map((name) => element('th', { scope: 'col' }, title(name)));
+  const rows = levels.map((level) => element('tr', {}, ...names.map((name) => levelCell(name, level[name]))));
+  return element(
+    'table',
+    { class: 'levels' },
+    element('thead', {}, element('tr', {}, ...head)),
+    element('tbody', {}, ...rows),
+  );
+}
+
+/** What another tool prints for this pair. */
+function toolBlock(tool: string, record: JsonValue): HTMLElement {
+  if (typeof record !== 'object' || record === null) return block(tool, element('p', {}, 'No value: see the warnings.'));
+  const { definition, per_threshold: levels, ...rest } = record as Json;
+  return element(
+    'div',
+    { class: 'tool' },
+    element('h4', {}, tool),
+    element('p', {}, String(definition ?? '')),
+    Array.isArray(levels) && levels.length > 0 ? levelTable(levels as Json[]) : undefined,
+    factList(flatten(rest)),
+  );
+}
+
 export function showRun(section: HTMLElement, report: Report): void {
   const { parameters, alignment, run, aliases } = report;
   const details = element(
@@ -54,7 +87,7 @@ export function showRun(section: HTMLElement, report: Report): void {
     block('Parameters', factList(Object.entries(parameters))),
     block('Alignment', factList(flatten(without(alignment, 'T_ref_est'))), matrix(alignment.T_ref_est)),
     block('Run', factList(flatten(without(run, 'command', 'stages'))), stageTable(run.stages)),
-    aliases && block('Other tools on this pair', factList(flatten(aliases))),
+    aliases && block('Other tools on this pair', ...Object.entries(aliases).map(([tool, record]) => toolBlock(tool, record))),
   );
   addEventListener('beforeprint', () => (details.open = true)); // a sheet of paper cannot be unfolded
   section.append(details);
