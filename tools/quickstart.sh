@@ -11,7 +11,7 @@ tools/quietly.sh cmake --preset release -B "$build" -DCMAP_BUILD_TESTS=OFF -DCMA
 tools/quietly.sh cmake --build "$build" --parallel "$(nproc)"
 
 maps=(data_samples/town/reference.ply data_samples/town/estimate.ply)
-"$build/bin/cmap_eval" "${maps[@]}" -o "$build/report.json"
-"$build/bin/cmap_render" "${maps[@]}" -o "$build/figure.png"
+"$build/bin/cmap_eval" "${maps[@]}" -o "$build/report.json" --html "$build/report.html" --figure "$build/figure.png"
 echo "Report:  $PWD/$build/report.json"
 echo "Picture: $PWD/$build/figure.png"
+echo "Page:    $PWD/$build/report.html"
