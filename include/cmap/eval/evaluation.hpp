@@ -36,6 +36,8 @@ struct Evaluation {
   double rmse_m = 0.0;
   std::vector<MetricRecord> metrics;  ///< in the catalog's order
   nlohmann::ordered_json aliases;     ///< by tool; null unless asked for
+  nlohmann::ordered_json intervals;   ///< null unless asked for
+  nlohmann::ordered_json unobserved;  ///< null unless asked for
   std::vector<Warning> warnings;
   std::vector<std::pair<std::string, double>> stage_seconds;
   MapPair pair;                            ///< both maps after transform, crop and thinning, with their neighbors

@@ -1,0 +1,44 @@
+#include "report/table_text.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace cmap {
+
+using Json = nlohmann::ordered_json;
+
+std::string digits(const Json& value) {
+  if (!value.is_number()) return "-";
+  // Rounded first: 999.96 has four digits before the point.
+  const double v = std::stod(fmt::format("{:.3e}", value.get<double>()));
+  if (v == 0.0) return "0";
+  const double magnitude = std::abs(v);
+  if (magnitude < 1e-4 || magnitude >= 1e6) return fmt::format("{:.3e}", v);
+  const int before_point = static_cast<int>(std::floor(std::log10(magnitude))) + 1;
+  return fmt::format("{:.{}f}", value.get<double>(), std::max(0, 4 - before_point));
+}
+
+std::string hundredths(const Json& value) {
+  if (!value.is_number()) return "-";
+  const double percent = 100.0 * value.get<double>();
+  return percent > 0.0 && percent < 0.005 ? "< 0.01" : fmt::format("{:.2f}", percent);
+}
+
+bool is_share(const MetricInfo& info) {
+  return info.id == "overlap" || info.id == "local_color_recall" || info.id == "fitness" || info.id == "completeness" ||
+         info.id == "f_score";
+}
+
+std::string shown_unit(const MetricInfo& info) {
+  if (is_share(info)) return "%";
+  return info.unit == "1" ? "" : std::string(info.unit);
+}
+
+std::string padded(std::string_view text, std::size_t width) {
+  std::size_t characters = 0;
+  for (char c : text) characters += (static_cast<unsigned char>(c) & 0xC0) != 0x80 ? 1 : 0;
+  return std::string(text) + std::string(width > characters ? width - characters : 0, ' ');
+}
+
+}  // namespace cmap
