@@ -13,7 +13,6 @@
 namespace cmap {
 namespace {
 
-constexpr int kSamples = 2;       // an axis and pixel
 constexpr double kMargin = 12.0;  // in the pen's units
 constexpr int kSmallestPanel = 64;
 
@@ -65,14 +64,14 @@ struct Sight {
   Array<float> shading_of_colors, shading_of_heat_maps;  ///< made when needed
 };
 
-PixelMap look_at(const PointBlocks& points, const Projection& projection, double point_size) {
+PixelMap look_at(const PointBlocks& points, const Projection& projection, const FigureOptions& figure) {
   constexpr double kCloseGaps = 2.0;  // of the spacing, so that random samples of a surface look closed
   constexpr double kLonePoint_px = 7.0;
   const double spacing_m = typical_spacing_m(points);
   SplatOptions options;
-  options.point_size_m = point_size * kCloseGaps * spacing_m;
-  options.min_size_px = spacing_m > 0.0 ? kSamples : kSamples * kLonePoint_px;
-  return splat(points, projection, options);
+  options.point_size_m = figure.point_size * kCloseGaps * spacing_m;
+  options.min_size_px = figure.samples * (spacing_m > 0.0 ? 1.0 : kLonePoint_px);
+  return figure.splatter(points, projection, options);
 }
 
 const Array<float>& shading_for(const Layer& layer, const Projection& projection, Sight& sight) {
@@ -87,20 +86,21 @@ const Array<float>& shading_for(const Layer& layer, const Projection& projection
 /// Colors, shades and averages the samples of every pixel.
 void paint(Image& image, const Rect& place, const Layer& layer, const PixelMap& pixels, const Array<float>& shading) {
   const auto samples_wide = static_cast<std::size_t>(pixels.width);
+  const auto samples = samples_wide / static_cast<std::size_t>(place.width);
   parallel_chunks(static_cast<std::size_t>(place.height), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y) {
       for (std::size_t x = 0; x < static_cast<std::size_t>(place.width); ++x) {
         float sum[3] = {0.0f, 0.0f, 0.0f};
-        int covered = 0;
-        for (std::size_t s = 0; s < kSamples * kSamples; ++s) {
-          const std::size_t cell = (y * kSamples + s / kSamples) * samples_wide + x * kSamples + s % kSamples;
+        std::size_t covered = 0;
+        for (std::size_t s = 0; s < samples * samples; ++s) {
+          const std::size_t cell = (y * samples + s / samples) * samples_wide + x * samples + s % samples;
           if (pixels.is_empty(cell)) continue;
           const Rgb8& color = layer.colors[pixels.slot(cell)];
           for (std::size_t c = 0; c < 3; ++c) sum[c] += shading[cell] * static_cast<float>(color[c]);
           ++covered;
         }
         if (covered == 0) continue;
-        Rgba8 mean{0, 0, 0, static_cast<std::uint8_t>(255 * covered / (kSamples * kSamples))};
+        Rgba8 mean{0, 0, 0, static_cast<std::uint8_t>(255 * covered / (samples * samples))};
         for (std::size_t c = 0; c < 3; ++c) {
           mean[c] = static_cast<std::uint8_t>(sum[c] / static_cast<float>(covered) + 0.5f);
         }
@@ -139,16 +139,16 @@ Image draw_figure(std::span<const Layer> layers, const Camera& camera, const Fig
   Image image(options.width_px, options.height_px, background_color(options.background));
   const Pen pen = pen_for(layers.size(), options);
   const Rect first = picture_of(0, layers.size(), options);
-  const Projection projection(camera, kSamples * first.width, kSamples * first.height);
+  const Projection projection(camera, options.samples * first.width, options.samples * first.height);
   // True at the depth of what the camera looks at.
-  const double meters_per_px = kSamples * projection.meters_per_pixel((camera.target - camera.position).norm());
+  const double meters_per_px = options.samples * projection.meters_per_pixel((camera.target - camera.position).norm());
   std::map<const PointBlocks*, Sight> sights;
   for (std::size_t i = 0; i < layers.size(); ++i) {
     const Layer& layer = layers[i];
     const Rect place = picture_of(i, layers.size(), options);
     const auto [place_of_sight, is_new] = sights.try_emplace(layer.points);
     Sight& sight = place_of_sight->second;
-    if (is_new) sight.pixels = look_at(*layer.points, projection, options.point_size);
+    if (is_new) sight.pixels = look_at(*layer.points, projection, options);
     paint(image, place, layer, sight.pixels, shading_for(layer, projection, sight));
     draw_title(image, place, layer, pen);
     draw_legend(image, place, layer, pen);
