@@ -38,7 +38,7 @@ endif()
 
 # Figures: optional. VTK's OpenGL and windows are for module gl alone.
 find_package(VTK 9.1 QUIET COMPONENTS CommonDataModel IOImage RenderingCore RenderingFreeType
-  OPTIONAL_COMPONENTS RenderingOpenGL2 RenderingUI glew)
+  OPTIONAL_COMPONENTS InteractionStyle RenderingOpenGL2 RenderingUI glew)
 find_package(OpenGL QUIET COMPONENTS EGL GLX)
 find_package(X11 QUIET)
 find_path(CMAP_OPENCV_INCLUDE_DIR opencv2/imgproc.hpp PATH_SUFFIXES opencv4)
@@ -49,7 +49,7 @@ if(VTK_FOUND AND CMAP_OPENCV_INCLUDE_DIR AND CMAP_OPENCV_CORE_LIBRARY AND CMAP_O
 else()
   set(CMAP_WITH_RENDER OFF)
 endif()
-if(CMAP_WITH_RENDER AND TARGET VTK::RenderingOpenGL2 AND TARGET VTK::RenderingUI AND TARGET VTK::glew
+if(CMAP_WITH_RENDER AND TARGET VTK::RenderingOpenGL2 AND TARGET VTK::RenderingUI AND TARGET VTK::InteractionStyle AND TARGET VTK::glew
    AND TARGET OpenGL::EGL AND TARGET OpenGL::GLX AND TARGET X11::X11)
   set(CMAP_WITH_GL ON)
 else()

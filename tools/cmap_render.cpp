@@ -8,6 +8,8 @@
 #include "cmap/core/parallel.hpp"
 #include "cmap/core/progress.hpp"
 #include "cmap/render/figure.hpp"
+#include "cmap/render/gl_module.hpp"
+#include "cmap/render/point_text.hpp"
 #include "cmap/render/standard_figure.hpp"
 #include "evaluation_arguments.hpp"
 #include "files.hpp"
@@ -17,7 +19,8 @@ namespace {
 
 constexpr const char* kDescription =
     "Draws a point-cloud map, or an estimated map beside its reference with what is wrong with it.\n"
-    "Needs no display and no GPU. Layers: reference, estimate, lcr, color-distance, distance, delta-e, ccs, "
+    "Needs no display and no GPU, except for --interactive, a window in which h shows the keys. Layers: reference, "
+    "estimate, lcr, color-distance, distance, delta-e, ccs, "
     "wasserstein, density,\n"
     "height.";
 
@@ -30,11 +33,11 @@ constexpr const char* kExample =
 
 struct Arguments {
   std::string map, estimate, output, transform;
-  std::string camera = "oblique", size = "1600x1000", background = "white", color_map;
+  std::string camera = "oblique", size = "1600x1000", background = "white", color_map, renderer = "splat";
   std::vector<std::string> panels;
   std::vector<double> range;
   double point_size = 1.0;
-  bool orthographic = false, logarithmic = false;
+  bool orthographic = false, logarithmic = false, interactive = false;
   cmap::EvaluationArguments evaluation;
   cmap::CommonArguments common;
 };
@@ -42,7 +45,8 @@ struct Arguments {
 void add_options(CLI::App& app, Arguments& a) {
   app.add_option("MAP", a.map, "map to draw; with EST, the reference")->required()->type_name("FILE");
   app.add_option("EST", a.estimate, "estimated map")->type_name("FILE");
-  app.add_option("-o,--output", a.output, "picture to write: .png or .jpg")->required()->type_name("FILE");
+  app.add_option("-o,--output", a.output, "picture to write: .png or .jpg")->type_name("FILE");
+  app.add_flag("--interactive", a.interactive, "a window to turn, zoom and pick points in; needs an X display");
   app.add_option("--panels", a.panels, "layers side by side [reference,estimate,lcr,color-distance]")
       ->type_name("LIST")
       ->delimiter(',')
@@ -61,10 +65,12 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("--point-size", a.point_size, "factor on the size of points [1]")
       ->type_name("FACTOR")
       ->check(CLI::Range(0.01, 100.0).description(""));
+  app.add_option("--renderer", a.renderer, "splat, on the processor, or gl, by OpenGL: the same picture [splat]")
+      ->type_name("NAME");
   app.add_option("--transform", a.transform, "4x4 matrix T_ref_est that moves the estimate into the reference frame")
       ->type_name("FILE");
   cmap::add_common_options(app, a.common, "no progress");
-  cmap::refuse_empty(app, {"--output", "--camera", "--color-map", "--transform"});
+  cmap::refuse_empty(app, {"--output", "--camera", "--color-map", "--renderer", "--transform"});
   a.evaluation.add_to(app, [](std::string_view name) {
     return name.starts_with("lcr-") ? name != "lcr-curve" : name.starts_with("ccs-") || name.starts_with("awd-");
   });
@@ -79,6 +85,13 @@ cmap::FigureOptions figure_options(const Arguments& a) {
   }
   options.background = cmap::background_from_name(a.background);
   options.point_size = a.point_size;
+  if (a.renderer == "gl") {
+    std::string device;
+    options.splatter = cmap::GlModule().open_splatter(device);
+    if (!a.common.quiet) fmt::print(stderr, "cmap_render: draws by {}\n", device);
+  } else if (a.renderer != "splat") {
+    throw cmap::UsageError(fmt::format("--renderer: \"{}\" is none of splat, gl", a.renderer));
+  }
   return options;
 }
 
@@ -112,7 +125,8 @@ cmap::Camera camera_of(const CameraChoice& choice, const Arguments& a, const cma
 struct Plan {
   explicit Plan(const Arguments& a) : options(figure_options(a)), layer(layer_options(a)), camera(camera_choice(a)) {
     cmap::refuse_overwriting({a.map, a.estimate, a.camera, a.transform}, {a.output});
-    cmap::check_image_name(a.output);
+    if (a.output.empty() == !a.interactive) throw cmap::UsageError("--output or --interactive is required, not both");
+    a.interactive ? cmap::GlModule().require_display() : cmap::check_image_name(a.output);
     a.evaluation.apply_to(evaluation);
     for (const std::string& panel : a.panels) cmap::check_layer_name(panel);
     (void)cmap::panel_aspect(std::max<std::size_t>(1, a.panels.size()), options);
@@ -123,18 +137,27 @@ struct Plan {
   cmap::EvaluationOptions evaluation;
 };
 
+using PointText = std::function<std::vector<std::string>(const cmap::PointBlocks& points, std::size_t slot)>;
+
+/// One picture of all layers, or a window that shows one after the other.
 void draw(const Arguments& a, std::span<const cmap::Layer> layers, const cmap::PointBlocks& points, const Plan& plan,
-          cmap::OutputFile& file) {
-  const cmap::Camera camera = camera_of(plan.camera, a, points, layers.size(), plan.options);
-  const cmap::Image image = cmap::draw_figure(layers, camera, plan.options);
-  cmap::write_image(image, a.output, file);
+          const PointText& describe_point, cmap::OutputFile* file) {
+  const std::size_t n_panels = a.interactive ? 1 : layers.size();
+  const cmap::Camera camera = camera_of(plan.camera, a, points, n_panels, plan.options);
+  if (a.interactive) {
+    const std::string title = a.estimate.empty() ? a.map : fmt::format("{}, {}", a.map, a.estimate);
+    return cmap::GlModule().view({title, layers, camera, plan.options, describe_point});
+  }
+  cmap::write_image(cmap::draw_figure(layers, camera, plan.options), a.output, *file);
 }
 
-void draw_map(const Arguments& a, const Plan& plan, cmap::OutputFile& file) {
+void draw_map(const Arguments& a, const Plan& plan, cmap::OutputFile* file) {
   if (!a.panels.empty() || !a.transform.empty()) throw cmap::UsageError("--panels and --transform need a second map");
   const cmap::IndexedMap map(cmap::read_point_cloud(a.map).cloud);
   const std::vector<cmap::Layer> layers{cmap::make_layer(map, a.map, plan.layer)};
-  draw(a, layers, map.index.points, plan, file);
+  draw(
+      a, layers, map.index.points, plan,
+      [&](const cmap::PointBlocks&, std::size_t slot) { return cmap::describe_point(map, slot); }, file);
 }
 
 /// What the panels and their captions need of an evaluation; color only where both maps have it.
@@ -149,27 +172,31 @@ cmap::EvaluationOptions evaluation_options(const Arguments& a, const Plan& plan,
   return options;
 }
 
-void draw_pair(const Arguments& a, const Plan& plan, cmap::OutputFile& file) {
+void draw_pair(const Arguments& a, const Plan& plan, cmap::OutputFile* file) {
   const Eigen::Matrix4d T_ref_est = cmap::transform_or_identity(a.transform);
   cmap::ProgressBar progress(!a.common.quiet);
   progress.update("read", 0.0);
   auto [reference, estimate] = cmap::read_both(a.map, a.estimate);
   const bool has_color = reference.cloud.has_color() && estimate.cloud.has_color();
   const cmap::Evaluation evaluation =
-      cmap::evaluate(std::move(reference.cloud), std::move(estimate.cloud), evaluation_options(a, plan, has_color), T_ref_est,
-                     [&](std::string_view stage, double done) { progress.update(stage, done); });
+      cmap::evaluate(std::move(reference.cloud), std::move(estimate.cloud), evaluation_options(a, plan, has_color),
+                     T_ref_est, [&](std::string_view stage, double done) { progress.update(stage, done); });
   std::vector<cmap::Layer> layers;
   for (const std::string& panel : a.panels.empty() ? cmap::standard_panels(evaluation) : a.panels)
     layers.push_back(cmap::make_layer(evaluation, panel, plan.layer));
-  draw(a, layers, evaluation.pair.reference.index.points, plan, file);
+  draw(
+      a, layers, evaluation.pair.reference.index.points, plan,
+      [&](const cmap::PointBlocks& points, std::size_t slot) { return cmap::describe_point(evaluation, points, slot); },
+      file);
 }
 
 cmap::ExitCode run(const Arguments& a) {
   const cmap::ThreadLimit limit(a.common.threads);
   const Plan plan(a);
-  cmap::OutputFile file(a.output);
-  a.estimate.empty() ? draw_map(a, plan, file) : draw_pair(a, plan, file);
-  file.commit();
+  std::optional<cmap::OutputFile> file;
+  if (!a.interactive) file.emplace(a.output);
+  a.estimate.empty() ? draw_map(a, plan, file ? &*file : nullptr) : draw_pair(a, plan, file ? &*file : nullptr);
+  if (file) file->commit();
   return cmap::ExitCode::kDone;
 }
 

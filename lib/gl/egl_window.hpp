@@ -6,15 +6,18 @@
 
 namespace cmap {
 
-/// A window of VTK that draws into an EGL context: Debian's VTK has none without an X server. vtkNew gives one; throws
-/// UsageError where there is no OpenGL.
+/// A window of VTK that draws into an EGL context: Debian's VTK has none without an X server.
 class EglWindow : public vtkGenericOpenGLRenderWindow {
  public:
   static EglWindow* New();
   vtkTypeMacro(EglWindow, vtkGenericOpenGLRenderWindow);
 
-  void MakeCurrent() override { context_.make_current(); }
-  bool IsCurrent() override { return context_.is_current(); }
+  /// Before anything else; must outlive the window.
+  void use(EglContext& context) { context_ = &context; }
+
+  void MakeCurrent() override { context_->make_current(); }
+  bool IsCurrent() override { return context_->is_current(); }
+  /// Throws UsageError where OpenGL's functions cannot be loaded.
   void OpenGLInitContext() override;
 
  protected:
@@ -22,7 +25,7 @@ class EglWindow : public vtkGenericOpenGLRenderWindow {
   ~EglWindow() override;
 
  private:
-  EglContext context_;
+  EglContext* context_ = nullptr;
 };
 
 }  // namespace cmap

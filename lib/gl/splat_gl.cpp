@@ -171,6 +171,7 @@ void set_state() {
 
 struct GlSplatter::Device {
   Device() {
+    window->use(context);
     window->Initialize();
     window->MakeCurrent();
     window->OpenGLInit();
@@ -209,6 +210,7 @@ struct GlSplatter::Device {
     arrays->ReleaseGraphicsResources();
   }
 
+  EglContext context;
   vtkNew<EglWindow> window;
   Array<Eigen::Vector3f> offsets;  ///< of one batch
 };

@@ -9,6 +9,7 @@
 #include "cmap/core/parallel.hpp"
 #include "render/legend.hpp"
 #include "render/names.hpp"
+#include "render/panels.hpp"
 
 namespace cmap {
 namespace {
@@ -29,23 +30,6 @@ Rgba8 ink_on(Background background) {
   return background == Background::kBlack ? Rgba8{235, 235, 235, 255} : Rgba8{20, 20, 20, 255};
 }
 
-Pen pen_for(std::size_t n_layers, const FigureOptions& options) {
-  const Grid grid = grid_for(n_layers);
-  const double unit = std::min(options.width_px / (800.0 * grid.columns), options.height_px / (500.0 * grid.rows));
-  return {ink_on(options.background), std::clamp(unit, 0.5, 16.0)};
-}
-
-/// The picture of panel i; its title stands above and its legend below.
-Rect picture_of(std::size_t i, std::size_t n, const FigureOptions& options) {
-  const Grid grid = grid_for(n);
-  const Pen pen = pen_for(n, options);
-  const int margin = pen.px(kMargin), title = pen.px(kTitleHeight);
-  const int width = (options.width_px - (grid.columns + 1) * margin) / grid.columns;
-  const int cell = (options.height_px - margin) / grid.rows;
-  const int column = static_cast<int>(i) % grid.columns, row = static_cast<int>(i) / grid.columns;
-  return {margin + column * (width + margin), row * cell + title, width, cell - title - pen.px(kLegendHeight)};
-}
-
 Rgba8 background_color(Background background) {
   switch (background) {
     case Background::kBlack:
@@ -57,6 +41,26 @@ Rgba8 background_color(Background background) {
   }
   return {255, 255, 255, 255};
 }
+
+}  // namespace
+
+Pen panel_pen(std::size_t n_panels, const FigureOptions& options) {
+  const Grid grid = grid_for(n_panels);
+  const double unit = std::min(options.width_px / (800.0 * grid.columns), options.height_px / (500.0 * grid.rows));
+  return {ink_on(options.background), std::clamp(unit, 0.5, 16.0)};
+}
+
+Rect panel_place(std::size_t i, std::size_t n, const FigureOptions& options) {
+  const Grid grid = grid_for(n);
+  const Pen pen = panel_pen(n, options);
+  const int margin = pen.px(kMargin), title = pen.px(kTitleHeight);
+  const int width = (options.width_px - (grid.columns + 1) * margin) / grid.columns;
+  const int cell = (options.height_px - margin) / grid.rows;
+  const int column = static_cast<int>(i) % grid.columns, row = static_cast<int>(i) / grid.columns;
+  return {margin + column * (width + margin), row * cell + title, width, cell - title - pen.px(kLegendHeight)};
+}
+
+namespace {
 
 /// The points of a map as one camera sees them; serves every layer of that map.
 struct Sight {
@@ -116,7 +120,7 @@ void check_size(std::size_t n_layers, const FigureOptions& options) {
   };
   if (options.width_px > kMostPixels || options.height_px > kMostPixels) refuse("is too large: at most 16384 a side");
   if (options.width_px < 1 || options.height_px < 1) refuse("is no picture");
-  const Rect place = picture_of(0, n_layers, options);
+  const Rect place = panel_place(0, n_layers, options);
   if (place.width < kSmallestPanel || place.height < kSmallestPanel) refuse("has no room for its panels");
 }
 
@@ -130,22 +134,22 @@ Background background_from_name(std::string_view name) {
 
 double panel_aspect(std::size_t n_layers, const FigureOptions& options) {
   check_size(n_layers, options);
-  const Rect place = picture_of(0, n_layers, options);
+  const Rect place = panel_place(0, n_layers, options);
   return static_cast<double>(place.width) / place.height;
 }
 
 Image draw_figure(std::span<const Layer> layers, const Camera& camera, const FigureOptions& options) {
   check_size(layers.size(), options);
   Image image(options.width_px, options.height_px, background_color(options.background));
-  const Pen pen = pen_for(layers.size(), options);
-  const Rect first = picture_of(0, layers.size(), options);
+  const Pen pen = panel_pen(layers.size(), options);
+  const Rect first = panel_place(0, layers.size(), options);
   const Projection projection(camera, options.samples * first.width, options.samples * first.height);
   // True at the depth of what the camera looks at.
   const double meters_per_px = options.samples * projection.meters_per_pixel((camera.target - camera.position).norm());
   std::map<const PointBlocks*, Sight> sights;
   for (std::size_t i = 0; i < layers.size(); ++i) {
     const Layer& layer = layers[i];
-    const Rect place = picture_of(i, layers.size(), options);
+    const Rect place = panel_place(i, layers.size(), options);
     const auto [place_of_sight, is_new] = sights.try_emplace(layer.points);
     Sight& sight = place_of_sight->second;
     if (is_new) sight.pixels = look_at(*layer.points, projection, options);
