@@ -125,7 +125,8 @@ cmap::Camera camera_of(const CameraChoice& choice, const Arguments& a, const cma
 struct Plan {
   explicit Plan(const Arguments& a) : options(figure_options(a)), layer(layer_options(a)), camera(camera_choice(a)) {
     cmap::refuse_overwriting({a.map, a.estimate, a.camera, a.transform}, {a.output});
-    if (a.output.empty() == !a.interactive) throw cmap::UsageError("--output or --interactive is required, not both");
+    if (a.output.empty() && !a.interactive) throw cmap::UsageError("--output is required, or --interactive");
+    if (!a.output.empty() && a.interactive) throw cmap::UsageError("--output: of --interactive, key s saves pictures");
     a.interactive ? cmap::GlModule().require_display() : cmap::check_image_name(a.output);
     a.evaluation.apply_to(evaluation);
     for (const std::string& panel : a.panels) cmap::check_layer_name(panel);
