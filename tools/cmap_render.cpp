@@ -19,10 +19,8 @@ namespace {
 
 constexpr const char* kDescription =
     "Draws a point-cloud map, or an estimated map beside its reference with what is wrong with it.\n"
-    "Needs no display and no GPU, except for --interactive, a window in which h shows the keys. Layers: reference, "
-    "estimate, lcr, color-distance, distance, delta-e, ccs, "
-    "wasserstein, density,\n"
-    "height.";
+    "Needs no display and no GPU; --interactive opens a window in which h shows the keys.\n"
+    "Layers: reference, estimate, lcr, color-distance, distance, delta-e, ccs, wasserstein, density, height.";
 
 constexpr const char* kExample =
     "Example:\n"
@@ -45,7 +43,8 @@ struct Arguments {
 void add_options(CLI::App& app, Arguments& a) {
   app.add_option("MAP", a.map, "map to draw; with EST, the reference")->required()->type_name("FILE");
   app.add_option("EST", a.estimate, "estimated map")->type_name("FILE");
-  app.add_option("-o,--output", a.output, "picture to write: .png or .jpg")->type_name("FILE");
+  app.add_option("-o,--output", a.output, "picture to write: .png or .jpg; required without --interactive")
+      ->type_name("FILE");
   app.add_flag("--interactive", a.interactive, "a window to turn, zoom and pick points in; needs an X display");
   app.add_option("--panels", a.panels, "layers side by side [reference,estimate,lcr,color-distance]")
       ->type_name("LIST")
@@ -69,7 +68,7 @@ void add_options(CLI::App& app, Arguments& a) {
       ->type_name("NAME");
   app.add_option("--transform", a.transform, "4x4 matrix T_ref_est that moves the estimate into the reference frame")
       ->type_name("FILE");
-  cmap::add_common_options(app, a.common, "no progress");
+  cmap::add_common_options(app, a.common, "no progress, and not which device OpenGL draws by");
   cmap::refuse_empty(app, {"--output", "--camera", "--color-map", "--renderer", "--transform"});
   a.evaluation.add_to(app, [](std::string_view name) {
     return name.starts_with("lcr-") ? name != "lcr-curve" : name.starts_with("ccs-") || name.starts_with("awd-");
