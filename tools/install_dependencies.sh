@@ -10,6 +10,7 @@ packages=(
   libeigen3-dev libfmt-dev libtbb-dev libssl-dev nlohmann-json3-dev libcli11-dev
   liblzf-dev liblz4-dev libflann-dev
   libvtk9-dev libopencv-imgproc-dev fonts-dejavu-core
+  libegl-dev libgl-dev libx11-dev libgl1-mesa-dri libegl-mesa0 xvfb xdotool
   libgtest-dev libgmock-dev python3 python3-numpy python3-scipy python3-jsonschema
 )
 for argument in "$@"; do
