@@ -17,6 +17,7 @@
 
 #include "cmap/core/error.hpp"
 #include "gl/egl_window.hpp"
+#include "gl/worker.hpp"
 
 namespace cmap {
 namespace {
@@ -185,7 +186,9 @@ struct GlSplatter::Device {
     return value == nullptr ? "unknown" : reinterpret_cast<const char*>(value);
   }
 
-  vtkShaderProgram& program() {
+  void splat(const PointBlocks& points, const Projection& projection, const SplatOptions& options, PixelMap& pixels);
+
+  vtkShaderProgram& ready_program() {
     vtkShaderProgram* ready = window->GetShaderCache()->ReadyShaderProgram(kVertexShader, kFragmentShader, "");
     if (ready == nullptr) throw UsageError("the OpenGL device cannot compile the program that draws points");
     return *ready;
@@ -215,18 +218,8 @@ struct GlSplatter::Device {
   Array<Eigen::Vector3f> offsets;  ///< of one batch
 };
 
-GlSplatter::GlSplatter() : device_(std::make_unique<Device>()) {}
-
-GlSplatter::~GlSplatter() = default;
-
-std::string GlSplatter::device() const {
-  device_->window->MakeCurrent();
-  return fmt::format("{}, OpenGL {}", Device::text(GL_RENDERER), Device::text(GL_VERSION));
-}
-
-void GlSplatter::splat(const PointBlocks& points, const Projection& projection, const SplatOptions& options,
-                       PixelMap& pixels) {
-  device_->window->MakeCurrent();
+void GlSplatter::Device::splat(const PointBlocks& points, const Projection& projection, const SplatOptions& options,
+                               PixelMap& pixels) {
   GLfloat sizes_px[2] = {1.0f, 1.0f};
   GLint most_texture_px = 0, most_viewport_px[2] = {0, 0};
   glGetFloatv(GL_POINT_SIZE_RANGE, sizes_px);
@@ -239,24 +232,43 @@ void GlSplatter::splat(const PointBlocks& points, const Projection& projection, 
   const int side_px =
       std::min({kMostTile_px, most_texture_px, std::min(most_viewport_px[0], most_viewport_px[1]) - 2 * margin_px});
   set_state();
-  vtkShaderProgram& program = device_->program();
+  vtkShaderProgram& program = ready_program();
   set_axes(program, points, projection);
   const float size[] = {static_cast<float>(options.point_size_m), static_cast<float>(options.min_size_px),
                         static_cast<float>(options.max_size_px)};
   program.SetUniform3f("size", size);
-  Target target(*device_->window, std::min(side_px, pixels.width), std::min(side_px, pixels.height));
+  Target target(*window, std::min(side_px, pixels.width), std::min(side_px, pixels.height));
   for (int y = 0; y < pixels.height; y += side_px) {
     for (int x = 0; x < pixels.width; x += side_px) {
       const Tile tile{x, y, std::min(side_px, pixels.width - x), std::min(side_px, pixels.height - y)};
       set_tile(program, tile, projection, margin_px);
       target.clear();
-      device_->draw_points(program, points);
+      draw_points(program, points);
       target.read(tile, pixels);
     }
   }
   if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
     throw UsageError(fmt::format("the OpenGL device refuses: error {:#x}, perhaps out of memory", error));
   }
+}
+
+GlSplatter::GlSplatter() : worker_(std::make_unique<Worker>()) {
+  worker_->run([this] { device_ = std::make_unique<Device>(); });
+}
+
+GlSplatter::~GlSplatter() {
+  worker_->run([this] { device_.reset(); });
+}
+
+std::string GlSplatter::device() const {
+  std::string name;
+  worker_->run([&] { name = fmt::format("{}, OpenGL {}", Device::text(GL_RENDERER), Device::text(GL_VERSION)); });
+  return name;
+}
+
+void GlSplatter::splat(const PointBlocks& points, const Projection& projection, const SplatOptions& options,
+                       PixelMap& pixels) {
+  worker_->run([&] { device_->splat(points, projection, options, pixels); });
 }
 
 }  // namespace cmap

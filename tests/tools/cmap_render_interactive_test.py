@@ -46,8 +46,11 @@ class Interactive(unittest.TestCase):
         os.close(write)
         with os.fdopen(read) as pipe:
             self.environment = {**os.environ, "DISPLAY": f":{pipe.readline().strip()}"}
+
+    def open(self, *arguments):
+        maps = TOWN / "reference.ply", TOWN / "estimate.ply"
         self.viewer = subprocess.Popen(
-            [PROGRAM, TOWN / "reference.ply", TOWN / "estimate.ply", "--interactive", "--quiet", "--size", f"{WIDTH}x{HEIGHT}"],
+            [PROGRAM, *maps, "--interactive", "--quiet", "--size", f"{WIDTH}x{HEIGHT}", *arguments],
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,
@@ -80,6 +83,7 @@ class Interactive(unittest.TestCase):
         return self.wait_for(what, lambda now: not np.array_equal(now, before))
 
     def test_layers_points_and_the_end(self):
+        self.open()
         middle = (slice(HEIGHT // 4, 3 * HEIGHT // 4), slice(WIDTH // 4, 3 * WIDTH // 4))
         first = self.wait_for("the map", lambda now: now[middle].std() > 20)
         self.do("mousemove", WIDTH // 2, HEIGHT // 2, "key", "3")
@@ -106,7 +110,17 @@ class Interactive(unittest.TestCase):
         self.assertTrue(0 < x < 40 and 0 < y < 40, "in the middle of the town")
         self.assertIn("local color recall: ", lines[-1])
 
+    def test_points_by_opengl(self):
+        """Its context and the window's do not meet."""
+        self.open("--renderer", "gl")
+        first = self.wait_for("the map", lambda now: now.std() > 20)
+        self.do("mousemove", WIDTH // 2, HEIGHT // 2, "mousedown", 1, "mousemove_relative", 80, 20, "mouseup", 1)
+        self.wait_for_change(first, "a turned map")
+        self.do("key", "q")
+        self.assertEqual(self.viewer.wait(timeout=PATIENCE_S), 0)
+
     def test_saves_the_picture(self):
+        self.open()
         self.wait_for("the map", lambda now: now.std() > 20)
         for number in (1, 2):
             self.do("key", "s")

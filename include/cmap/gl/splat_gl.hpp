@@ -7,8 +7,11 @@
 
 namespace cmap {
 
+class Worker;
+
 /// splat() by OpenGL, off screen and without a display: on the first GPU that EGL finds, else in software (Mesa's
-/// llvmpipe). Use from one thread at a time; each object has a context of its own.
+/// llvmpipe). Each object has a context and a thread of its own and may be
+/// used from any thread, one at a time.
 class GlSplatter {
  public:
   /// Throws UsageError where there is no OpenGL 4.5 or ARB_clip_control.
@@ -27,6 +30,7 @@ class GlSplatter {
 
  private:
   struct Device;
+  std::unique_ptr<Worker> worker_;  ///< where all of OpenGL is called
   std::unique_ptr<Device> device_;
 };
 
