@@ -118,18 +118,19 @@ TEST_F(SplatGl, EquallyNearPointsGoToTheLowerSlot) {
   EXPECT_EQ(pixels.slot(10 * 21 + 10), 0u);
 }
 
-/// Depths apart by one part in four million, nearer ones drawn last: no depth buffer of 24 bits keeps them apart.
+/// Depths apart by the last bit of a float, whichever of two points is drawn first.
 TEST_F(SplatGl, DepthsKeepAllBitsOfTheirFloats) {
-  const PointBlocks points = sort_points(test::small_map({{0, 0, 0}, {0, 0, 0.25f}, {0, 0, 0.125f}}));
-  Camera camera;
-  camera.position = {0, 0, 1'000'000};
-  camera.target = {0, 0, 0};
-  camera.up = Eigen::Vector3d::UnitY();
-  camera.orthographic = true;
-  const Projection projection(camera, 3, 3);
-  const PixelMap drawn = draw(points, projection, {0.0, 1.0, 1.0});
-  EXPECT_EQ(drawn.cells, splat(points, projection, {0.0, 1.0, 1.0}).cells);
-  EXPECT_EQ(drawn.depth_m(4), 999'999.75f);
+  const PointBlocks points = sort_points(test::small_map({{0, 0, 0}, {0, 0, 0.0625f}}));
+  for (const double side : {-1.0, 1.0}) {
+    Camera camera;
+    camera.position = {0, 0, side * 1'000'000};
+    camera.target = {0, 0, 0};
+    camera.up = Eigen::Vector3d::UnitY();
+    camera.orthographic = true;
+    const PixelMap drawn = draw(points, Projection(camera, 3, 3), {0.0, 1.0, 1.0});
+    EXPECT_EQ(drawn.cells, splat(points, Projection(camera, 3, 3), {0.0, 1.0, 1.0}).cells);
+    EXPECT_EQ(drawn.depth_m(4), side < 0.0 ? 1'000'000.0f : 999'999.9375f);
+  }
 }
 
 TEST_F(SplatGl, LargePicturesAreDrawnInTiles) {
