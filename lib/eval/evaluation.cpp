@@ -94,8 +94,7 @@ Evaluation evaluate(PointCloud reference, PointCloud estimate, const EvaluationO
   check_color(reference, estimate, selection, warnings);
   clock.run("prepare", 0.15, [&] { prepare_clouds(reference, estimate, options, selection, T_ref_est, warnings); });
   Evaluation result{
-      options, T_ref_est, 0.0, 0.0, {}, {}, {}, {}, {}, {}, index_and_pair(reference, estimate, options.index, clock),
-      {}};
+      .options = options, .T_ref_est = T_ref_est, .pair = index_and_pair(reference, estimate, options.index, clock)};
 
   Findings findings{options, selection, result.pair, {}, {}, {}, {}};
   clock.run("geometry", 0.7, [&] {
