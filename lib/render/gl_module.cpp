@@ -1,33 +1,14 @@
 #include "cmap/render/gl_module.hpp"
 
-#include <dlfcn.h>
-#include <fmt/format.h>
-
-#include "cmap/core/error.hpp"
+#include "core/loaded_module.hpp"
 
 namespace cmap {
-namespace {
-
-template <class Function>
-void find_function(void* library, const char* name, Function& function) {
-  function = reinterpret_cast<Function>(::dlsym(library, name));
-  if (function == nullptr) throw UsageError(fmt::format("OpenGL: {}", ::dlerror()));
-}
-
-}  // namespace
 
 GlModule::GlModule() {
-  // Found by the program's run path; never unloaded, as VTK's libraries do not survive that.
-  void* library = ::dlopen("libcmap_gl.so", RTLD_NOW | RTLD_LOCAL);
-  if (library == nullptr) {
-    throw UsageError(
-        fmt::format("this build has no OpenGL (apt-get install libvtk9-dev libegl-dev libgl-dev libx11-dev, then build "
-                    "again): {}",
-                    ::dlerror()));
-  }
-  find_function(library, "cmap_gl_open_splatter", open_splatter_);
-  find_function(library, "cmap_gl_require_display", require_display_);
-  find_function(library, "cmap_gl_view", view_);
+  const LoadedModule module("libcmap_gl.so", "this build has no OpenGL (tools/install_dependencies.sh, build again)");
+  module.find("cmap_gl_open_splatter", open_splatter_);
+  module.find("cmap_gl_require_display", require_display_);
+  module.find("cmap_gl_view", view_);
 }
 
 Splatter GlModule::open_splatter(std::string& device) const {
