@@ -233,6 +233,12 @@ const std::vector<OptionSpec>& evaluation_option_specs() {
       CMAP_OPTION("observed", kWord, "none|auto",
                   "auto: also the metrics without what the other map could not have seen (no point within 1 m columns)",
                   observed, observed_kind(n, value), o.observed == Observed::kAuto ? "auto" : "none"),
+      CMAP_OPTION("sensitivity", kFlag, "", "how far every metric goes when the alignment is a little off", sensitivity,
+                  flag(n, value), o.sensitivity),
+      CMAP_OPTION("sensitivity-translation", kNumber, "METERS", "that little, along every axis",
+                  sensitivity_translation_m, positive(n, value), o.sensitivity_translation_m),
+      CMAP_OPTION("sensitivity-rotation", kNumber, "DEGREES", "and about every axis", sensitivity_rotation_deg,
+                  positive(n, value), o.sensitivity_rotation_deg),
       CMAP_OPTION("index", kWord, "bvh|flann", "nearest-neighbor index", index, index_kind(n, value),
                   o.index == IndexKind::kFlann ? "flann" : "bvh"),
   };

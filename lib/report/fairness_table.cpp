@@ -15,6 +15,10 @@ std::string line(const MetricInfo& info, const std::string& title, const std::st
   return fmt::format("  {} {} {} {}\n", padded(title, 30), padded(info.symbol, 10), value, shown_unit(info));
 }
 
+std::string span_text(const MetricInfo& info, const Json& from, const Json& to) {
+  return fmt::format("{:>10} to {:>10}", shown(info, from), shown(info, to));
+}
+
 /// One line for each value of these metrics, in the catalog's order.
 std::string lines(const Json& metrics, const std::function<std::string(const MetricInfo&, const Json&)>& text_of) {
   std::string result;
@@ -35,6 +39,16 @@ std::string lines(const Json& metrics, const std::function<std::string(const Met
 
 }  // namespace
 
+std::string sensitivity_lines(const Json& report) {
+  if (!report.contains("sensitivity")) return "";
+  const Json& sensitivity = report.at("sensitivity");
+  return fmt::format("\nwhen the estimate is off by {} m or {} degrees\n",
+                     sensitivity.at("translation_m").get<double>(), sensitivity.at("rotation_deg").get<double>()) +
+         lines(sensitivity.at("metrics"), [](const MetricInfo& info, const Json& entry) {
+           return span_text(info, entry.at("lowest"), entry.at("highest"));
+         });
+}
+
 std::string interval_lines(const Json& report) {
   if (!report.contains("intervals")) return "";
   const Json& intervals = report.at("intervals");
@@ -43,7 +57,7 @@ std::string interval_lines(const Json& report) {
                      intervals.at("n_blocks").get<std::uint64_t>(),
                      intervals.at("blocks").at("block_m").get<double>()) +
          lines(intervals.at("metrics"), [](const MetricInfo& info, const Json& entry) {
-           return fmt::format("{:>10} to {:>10}", shown(info, entry.at("lower")), shown(info, entry.at("upper")));
+           return span_text(info, entry.at("lower"), entry.at("upper"));
          });
 }
 

@@ -39,6 +39,9 @@ struct EvaluationOptions {
   std::uint64_t bootstrap = 0;    ///< replicates for confidence intervals; 0: none
   double block_m = 10.0;          ///< of the bootstrap
   Observed observed = Observed::kNone;
+  bool sensitivity = false;
+  double sensitivity_translation_m = 0.01;
+  double sensitivity_rotation_deg = 0.1;
   IndexKind index = IndexKind::kBvh;
 };
 
