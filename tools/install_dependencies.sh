@@ -11,7 +11,7 @@ packages=(
   libeigen3-dev libfmt-dev libtbb-dev libssl-dev nlohmann-json3-dev libcli11-dev
   zlib1g-dev liblzf-dev liblz4-dev libflann-dev
   libvtk9-dev libopencv-imgproc-dev fonts-dejavu-core
-  libegl-dev libgl-dev libx11-dev
+  libegl-dev libgl-dev libx11-dev libpcl-dev
 )
 for argument in "$@"; do
   case "$argument" in
@@ -21,7 +21,7 @@ for argument in "$@"; do
       # Node's own packages bring npm with them and exclude Debian's.
       command -v npm >/dev/null || packages+=(nodejs npm)
       ;;
-    --benchmarks) packages+=(libbenchmark-dev libnanoflann-dev libpcl-dev) ;;
+    --benchmarks) packages+=(libbenchmark-dev libnanoflann-dev) ;;
     -h | --help) sed -n '2,/^set /{/^#/s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"; exit 0 ;;
     *) echo "install_dependencies.sh: unknown argument '$argument'; see --help" >&2; exit 2 ;;
   esac
