@@ -15,8 +15,8 @@
 #include "cmap/core/parallel.hpp"
 #include "cmap/core/simd.hpp"
 #include "cmap/eval/point_errors.hpp"
+#include "cmap/eval/protocol.hpp"
 #include "cmap/eval/requirement.hpp"
-#include "cmap/eval/sensitivity.hpp"
 #include "cmap/io/output_file.hpp"
 #include "cmap/report/figure_module.hpp"
 #include "cmap/report/html_report.hpp"
@@ -43,7 +43,8 @@ constexpr const char* kExample =
 /// The command line as given.
 struct Arguments {
   std::string reference, estimate;
-  std::string output, html, figure, format = "table", config, preset, transform;
+  std::string output, html, figure, format = "table", config, preset, transform, initial;
+  std::string reference_trajectory, estimate_trajectory;
   std::string estimate_errors, reference_errors;
   std::vector<std::string> requirements;
   cmap::EvaluationArguments evaluation;
@@ -69,6 +70,12 @@ void add_options(CLI::App& app, Arguments& a) {
       ->type_name("NAME");
   app.add_option("--transform", a.transform, "4x4 matrix T_ref_est that moves the estimate into the reference frame")
       ->type_name("FILE");
+  app.add_option("--initial", a.initial, "the same as the place where --align begins")->type_name("FILE");
+  app.add_option("--ref-trajectory", a.reference_trajectory,
+                 "TUM file of the reference's poses, for --align trajectory")
+      ->type_name("FILE");
+  app.add_option("--est-trajectory", a.estimate_trajectory, "TUM file of the estimate's poses, at the same times")
+      ->type_name("FILE");
   app.add_option("--require", a.requirements, "exit 1 unless it holds: LCR>=0.2, accuracy@0.1<=0.06; repeatable")
       ->type_name("EXPR")
       ->expected(1)
@@ -78,8 +85,8 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("--export-reference-errors", a.reference_errors, "the same for the reference, with LCR hits")
       ->type_name("FILE.ply");
   cmap::add_common_options(app, a.common, "no table, no progress");
-  cmap::refuse_empty(app, {"--output", "--html", "--figure", "--config", "--preset", "--transform", "--export-errors",
-                           "--export-reference-errors"});
+  cmap::refuse_empty(app, {"--output", "--html", "--figure", "--config", "--preset", "--transform", "--initial",
+                           "--ref-trajectory", "--est-trajectory", "--export-errors", "--export-reference-errors"});
   a.evaluation.add_to(app, [](std::string_view) { return true; });
 }
 
@@ -90,6 +97,25 @@ cmap::EvaluationOptions resolve_options(const Arguments& arguments) {
   arguments.evaluation.apply_to(options);
   if (!arguments.html.empty()) options.lcr_curve = true;
   return options;
+}
+
+/// Files that only another option would read are mistakes.
+cmap::ProtocolInputs protocol_inputs(const Arguments& a, const cmap::EvaluationOptions& options) {
+  const bool by_trajectories = options.align == "trajectory";
+  if (!a.initial.empty() && (options.align == "none" || by_trajectories || !a.transform.empty())) {
+    throw cmap::UsageError("--initial needs an --align that begins somewhere, and no --transform");
+  }
+  if (by_trajectories == (a.reference_trajectory.empty() || a.estimate_trajectory.empty()) ||
+      (!by_trajectories && !(a.reference_trajectory.empty() && a.estimate_trajectory.empty()))) {
+    throw cmap::UsageError("--align trajectory needs --ref-trajectory and --est-trajectory, and they need it");
+  }
+  cmap::ProtocolInputs inputs;
+  inputs.T_initial = cmap::transform_or_identity(a.initial.empty() ? a.transform : a.initial);
+  if (by_trajectories) {
+    inputs.reference_trajectory = cmap::read_tum_trajectory(a.reference_trajectory);
+    inputs.estimate_trajectory = cmap::read_tum_trajectory(a.estimate_trajectory);
+  }
+  return inputs;
 }
 
 bool check_requirements(const std::vector<cmap::Requirement>& requirements, const cmap::Evaluation& evaluation) {
@@ -173,7 +199,8 @@ ExitCode run(const Arguments& arguments, const std::string& command) {
                            {},
                            cmap::thread_count(),
                            std::string(cmap::simd_level_name(cmap::simd_level()))};
-  cmap::refuse_overwriting({arguments.reference, arguments.estimate, arguments.config, arguments.transform},
+  cmap::refuse_overwriting({arguments.reference, arguments.estimate, arguments.config, arguments.transform,
+                            arguments.initial, arguments.reference_trajectory, arguments.estimate_trajectory},
                            arguments.outputs());
   check_outputs(arguments);
   std::optional<cmap::FigureModule> figures;
@@ -181,7 +208,7 @@ ExitCode run(const Arguments& arguments, const std::string& command) {
   const cmap::EvaluationOptions options = resolve_options(arguments);
   std::vector<cmap::Requirement> requirements;
   for (const std::string& text : arguments.requirements) requirements.push_back(cmap::parse_requirement(text, options));
-  const Eigen::Matrix4d T_ref_est = cmap::transform_or_identity(arguments.transform);
+  const cmap::ProtocolInputs inputs = protocol_inputs(arguments, options);
 
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   cmap::ProgressBar progress(!arguments.common.quiet);
@@ -191,20 +218,9 @@ ExitCode run(const Arguments& arguments, const std::string& command) {
   run.stage_seconds.emplace_back("read", seconds());
   const cmap::InputDescription reference_description = describe(reference);
   const cmap::InputDescription estimate_description = describe(estimate);
-  const cmap::ProgressSink show = [&](std::string_view stage, double done) { progress.update(stage, done); };
-  std::optional<cmap::SensitivityBand> band;
-  if (options.sensitivity) {
-    const double before = seconds();
-    band = cmap::sensitivity_band(reference.cloud, estimate.cloud, options, T_ref_est, show);
-    run.stage_seconds.emplace_back("sensitivity", seconds() - before);
-  }
-  cmap::Evaluation evaluation =
-      cmap::evaluate(std::move(reference.cloud), std::move(estimate.cloud), options, T_ref_est, show);
-  if (band) {
-    band->include(evaluation);
-    evaluation.sensitivity = band->json(options);
-  }
-
+  const cmap::Evaluation evaluation =
+      cmap::evaluate_by_protocol(std::move(reference.cloud), std::move(estimate.cloud), options, inputs,
+                                 [&](std::string_view stage, double done) { progress.update(stage, done); });
   run.stage_seconds.insert(run.stage_seconds.end(), evaluation.stage_seconds.begin(), evaluation.stage_seconds.end());
   run.wall_s = seconds();
   const auto report = cmap::make_report(reference_description, estimate_description, evaluation, run);

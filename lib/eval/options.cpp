@@ -65,11 +65,11 @@ std::vector<std::string> words(const char* name, const Json& value) {
 }
 
 std::vector<std::string> tools(const char* name, const Json& value) {
-  static const std::vector<std::string> kTools{"mapeval", "open3d", "mpeg", "cloudcompare"};
+  static const std::vector<std::string> kTools{"mapeval", "open3d", "mpeg", "cloudcompare", "tanksandtemples"};
   std::vector<std::string> list = words(name, value);
   for (const std::string& tool : list) {
     if (std::ranges::count(kTools, tool) == 0)
-      refuse(name, tool, "is unknown; tools are mapeval, open3d, mpeg, cloudcompare");
+      refuse(name, tool, "is unknown; tools are mapeval, open3d, mpeg, cloudcompare, tanksandtemples");
   }
   return list;
 }
@@ -100,6 +100,15 @@ Observed observed_kind(const char* name, const Json& value) {
   if (value == "none") return Observed::kNone;
   if (value == "auto") return Observed::kAuto;
   refuse(name, value, "is neither none nor auto");
+}
+
+std::string one_of(const char* name, const Json& value, std::initializer_list<const char*> words) {
+  std::string known;
+  for (const char* word : words) {
+    if (value == word) return word;
+    known += fmt::format("{}{}", known.empty() ? "" : ", ", word);
+  }
+  refuse(name, value, fmt::format("is none of {}", known).c_str());
 }
 
 bool flag(const char* name, const Json& value) {
@@ -225,14 +234,28 @@ const std::vector<OptionSpec>& evaluation_option_specs() {
                   positive_or_unset(n, value), optional_number(o.voxel_m)),
       CMAP_OPTION("crop", kNumbers, "X0,Y0,Z0,X1,Y1,Z1", "keep this box of both maps, in the reference frame", crop,
                   value.is_null() ? std::nullopt : std::optional(crop_box(n, value)), crop_json(o)),
-      CMAP_OPTION("as", kWords, "TOOLS", "also what mapeval, open3d, mpeg or cloudcompare would print", as,
-                  tools(n, value), o.as),
+      CMAP_OPTION("as", kWords, "TOOLS", "also what mapeval, open3d, mpeg, cloudcompare or tanksandtemples would print",
+                  as, tools(n, value), o.as),
       CMAP_OPTION("bootstrap", kCount, "N", "confidence intervals of 95 % from N replicates of blocks of the map",
                   bootstrap, count(n, value, 0, 1'000'000), o.bootstrap),
       CMAP_OPTION("block", kNumber, "METERS", "edge of those blocks", block_m, positive(n, value), o.block_m),
       CMAP_OPTION("observed", kWord, "none|auto",
                   "auto: also the metrics without what the other map could not have seen (no point within 1 m columns)",
                   observed, observed_kind(n, value), o.observed == Observed::kAuto ? "auto" : "none"),
+      CMAP_OPTION("align", kWord, "METHOD",
+                  "move the estimate first: none, icp, plane, gicp, sim3, global, trajectory, tanksandtemples", align,
+                  one_of(n, value, {"none", "icp", "plane", "gicp", "sim3", "global", "trajectory", "tanksandtemples"}),
+                  o.align),
+      CMAP_OPTION("align-voxel", kNumber, "METERS", "thinning for the alignment; by default from the reference's size",
+                  align_voxel_m, positive_or_unset(n, value), optional_number(o.align_voxel_m)),
+      CMAP_OPTION("align-distance", kNumber, "METERS", "farther pairs are no matches; by default 10 voxels",
+                  align_distance_m, positive_or_unset(n, value), optional_number(o.align_distance_m)),
+      CMAP_OPTION("align-scale", kFlag, "", "icp, plane, gicp, global: also find the scale (sim3 always does)",
+                  align_scale, flag(n, value), o.align_scale),
+      CMAP_OPTION("trajectory-fit", kWord, "FIT", "of trajectories: first-frame, se3 or sim3", trajectory_fit,
+                  one_of(n, value, {"first-frame", "se3", "sim3"}), o.trajectory_fit),
+      CMAP_OPTION("tanksandtemples-tau", kNumber, "METERS", "its threshold; by default the largest of the thresholds",
+                  tanks_and_temples_tau_m, positive_or_unset(n, value), optional_number(o.tanks_and_temples_tau_m)),
       CMAP_OPTION("sensitivity", kFlag, "", "how far every metric goes when the alignment is a little off", sensitivity,
                   flag(n, value), o.sensitivity),
       CMAP_OPTION("sensitivity-translation", kNumber, "METERS", "that little, along every axis",
@@ -246,6 +269,10 @@ const std::vector<OptionSpec>& evaluation_option_specs() {
 }
 
 #undef CMAP_OPTION
+
+double tanks_and_temples_tau_m(const EvaluationOptions& options) {
+  return options.tanks_and_temples_tau_m.value_or(std::ranges::max(options.thresholds_m));
+}
 
 void set_option(EvaluationOptions& options, const OptionSpec& spec, const std::string& text) {
   spec.set(options, value_from_text(spec, text));

@@ -1,7 +1,9 @@
 #include "eval/peer_records.hpp"
 
+#include "cmap/align/tanks_and_temples.hpp"
 #include "cmap/core/color.hpp"
 #include "cmap/metrics/peers.hpp"
+#include "eval/cloud_of.hpp"
 #include "eval/json_number.hpp"
 
 namespace cmap {
@@ -89,6 +91,22 @@ Json mpeg_record(const Findings& f, std::vector<Warning>& warnings) {
           {"symmetric", direction(d.symmetric)}};
 }
 
+Json tanks_and_temples_record(const Findings& f) {
+  TanksAndTemplesOptions options;
+  options.tau_m = tanks_and_temples_tau_m(f.options);
+  options.crop = f.options.crop;
+  const TanksAndTemplesResult r =
+      tanks_and_temples(cloud_of(f.pair.estimate), cloud_of(f.pair.reference), Eigen::Matrix4d::Identity(), options);
+  return {{"definition", "Tanks and Temples toolbox: three stages of ICP with scale, clouds thinned to tau / 2"},
+          {"tau_m", options.tau_m},
+          {"precision", r.precision},
+          {"recall", r.recall},
+          {"f_score", r.f_score},
+          {"n_estimate", r.n_source},
+          {"n_reference", r.n_target},
+          {"scale", r.alignment.scale}};
+}
+
 }  // namespace
 
 Json peer_records(const Findings& f, std::vector<Warning>& warnings) {
@@ -97,6 +115,7 @@ Json peer_records(const Findings& f, std::vector<Warning>& warnings) {
     if (tool == "mapeval") records[tool] = mapeval_record(f);
     if (tool == "open3d") records[tool] = open3d_record(f);
     if (tool == "cloudcompare") records[tool] = cloudcompare_record(f);
+    if (tool == "tanksandtemples") records[tool] = tanks_and_temples_record(f);
     if (tool == "mpeg") records[tool] = mpeg_record(f, warnings);
   }
   return records;

@@ -1,26 +1,10 @@
 #include "cmap/eval/point_errors.hpp"
 
-#include "cmap/core/color.hpp"
 #include "cmap/io/point_cloud_file.hpp"
+#include "eval/cloud_of.hpp"
 
 namespace cmap {
 namespace {
-
-/// The map in its own order; colors as 8 bit.
-PointCloud point_cloud(const IndexedMap& map) {
-  const PointBlocks& points = map.index.points;
-  PointCloud cloud;
-  cloud.origin = points.origin;
-  cloud.positions.resize(points.size);
-  Array<Rgb8> colors(map.has_color() ? points.size : 0);
-  for (std::size_t slot = 0; slot < points.size; ++slot) {
-    const std::uint32_t i = points.original_index[slot];
-    cloud.positions[i] = points.offset(slot);
-    if (map.has_color()) colors[i] = to_rgb8(color_at(map.colors, slot));
-  }
-  if (map.has_color()) cloud.colors = std::move(colors);
-  return cloud;
-}
 
 /// A field in the map's own order from a value for every slot.
 template <class ValueAt>
@@ -46,7 +30,7 @@ void write_errors(const Evaluation& evaluation, const NearestPairs& pairs, const
     recall_classes = field(points, [&](std::size_t slot) { return static_cast<int>(recall->classes[slot]); });
     fields.push_back({"scalar_lcr", recall_classes});
   }
-  write_ply(file, point_cloud(pairs.from), fields);
+  write_ply(file, cloud_of(pairs.from), fields);
 }
 
 }  // namespace

@@ -75,16 +75,12 @@ Json SensitivityBand::json(const EvaluationOptions& options) const {
 SensitivityBand sensitivity_band(const PointCloud& reference, const PointCloud& estimate,
                                  const EvaluationOptions& options, const Eigen::Matrix4d& T_ref_est,
                                  const ProgressSink& progress) {
-  EvaluationOptions plain = options;
-  plain.bootstrap = 0;
-  plain.observed = Observed::kNone;
-  plain.as.clear();
   SensitivityBand band;
   double done = 0.0;
   const std::vector<Eigen::Matrix4d> all = motions(options, centroid(estimate, T_ref_est));
   for (const Eigen::Matrix4d& motion : all) {
     if (progress) progress("sensitivity", done / static_cast<double>(all.size()));
-    band.include(evaluate(reference, estimate, plain, motion * T_ref_est));
+    band.include(evaluate(reference, estimate, options, motion * T_ref_est));
     ++done;
   }
   return band;

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "cmap/align/align.hpp"
 #include "cmap/core/version.hpp"
 
 namespace cmap {
@@ -36,15 +37,38 @@ Json matrix_json(const Eigen::Matrix4d& T) {
   return rows;
 }
 
-Json alignment_json(const Evaluation& evaluation) {
+/// The scores before, as in `metrics` but for what the catalog says anyway.
+Json before_json(const Evaluation& evaluation) {
+  if (evaluation.metrics_before.empty()) return nullptr;
+  Json before = Json::object();
+  for (const MetricRecord& record : evaluation.metrics_before) before[record.info->id] = record.fields;
+  return before;
+}
+
+/// What the search for T_ref_est says of itself; null where there was none.
+Json registration_json(const Evaluation& evaluation) {
+  if (!evaluation.alignment) return nullptr;
+  Json registration = alignment_json(*evaluation.alignment);
+  for (const char* said_already : {"method", "T_dst_src", "scale", "warnings"}) registration.erase(said_already);
+  return registration;
+}
+
+Json transform_json(const Evaluation& evaluation) {
   const Eigen::Matrix4d& T = evaluation.T_ref_est;
   const bool given = T != Eigen::Matrix4d::Identity();
-  return {{"method", given ? "given" : "none"},
+  const double scale = evaluation.alignment ? evaluation.alignment->scale
+                       : given              ? std::cbrt(T.topLeftCorner<3, 3>().determinant())
+                                            : 1.0;
+  return {{"method", evaluation.alignment ? evaluation.options.align
+                     : given              ? "given"
+                                          : "none"},
           {"T_ref_est", matrix_json(T)},
-          {"scale", given ? std::cbrt(T.topLeftCorner<3, 3>().determinant()) : 1.0},
-          {"before", nullptr},
+          {"scale", scale},
+          {"scale_error", 1.0 / scale - 1.0},
+          {"before", before_json(evaluation)},
           {"overlap", evaluation.overlap},
-          {"rmse_m", evaluation.rmse_m}};
+          {"rmse_m", evaluation.rmse_m},
+          {"registration", registration_json(evaluation)}};
 }
 
 Json metric_json(const MetricRecord& record) {
@@ -101,7 +125,7 @@ Json make_report(const InputDescription& reference, const InputDescription& esti
   report["tool"] = {{"name", "cmap_eval"}, {"version", kVersion}};
   report["inputs"] = {{"reference", input_json(reference)}, {"estimate", input_json(estimate)}};
   report["parameters"] = to_json(evaluation.options);
-  report["alignment"] = alignment_json(evaluation);
+  report["alignment"] = transform_json(evaluation);
   report["metrics"] = Json::object();
   for (const MetricRecord& record : evaluation.metrics) report["metrics"][record.info->id] = metric_json(record);
   if (!evaluation.aliases.is_null()) report["aliases"] = evaluation.aliases;

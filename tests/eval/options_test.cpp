@@ -53,6 +53,12 @@ const Setting kSettings[] = {
     {"bootstrap", "200", "200"},
     {"block", "2.5", "2.5"},
     {"observed", "auto", R"("auto")"},
+    {"align", "gicp", R"("gicp")"},
+    {"align-voxel", "0.3", "0.3"},
+    {"align-distance", "4", "4.0"},
+    {"align-scale", "true", "true"},
+    {"trajectory-fit", "se3", R"("se3")"},
+    {"tanksandtemples-tau", "0.03", "0.03"},
     {"sensitivity", "true", "true"},
     {"sensitivity-translation", "0.05", "0.05"},
     {"sensitivity-rotation", "0.5", "0.5"},
@@ -89,7 +95,8 @@ TEST(Options, DefaultsAreThoseOfTheDefinitions) {
     "lcr-curve": false, "ccs-voxel": 0.2, "ccs-min-points": 2, "awd-voxel": 3.0, "awd-min-points": 100,
     "scs-radius": 5, "mme-radius": 0.1, "mme-min-neighbors": 10, "color-max-distance": null, "voxel": null,
     "crop": null, "as": [], "bootstrap": 0, "block": 10.0, "observed": "none",
-    "sensitivity": false, "sensitivity-translation": 0.01, "sensitivity-rotation": 0.1, "index": "bvh"})");
+    "align": "none", "align-voxel": null, "align-distance": null, "align-scale": false, "trajectory-fit": "sim3",
+    "tanksandtemples-tau": null, "sensitivity": false, "sensitivity-translation": 0.01, "sensitivity-rotation": 0.1, "index": "bvh"})");
   for (const auto& [name, value] : expected.items()) EXPECT_EQ(defaults.at(name), value) << name;
   EXPECT_EQ(defaults.size(), expected.size() + 1) << "the metrics are the one more";
 }

@@ -26,6 +26,23 @@ from cmap_eval_testing import (
 
 
 class BadMaps(CmapEval):
+    def test_alignments_that_cannot_be(self):
+        line = self.input("line.ply", ply([(0.1 * i, 0, 0) for i in range(200)]))
+        far = self.input("far.ply", ply([(1000 + i % 7, i % 5, i % 3) for i in range(200)]))
+        near = self.input("near.ply", ply([(i % 7, i % 5, i % 3) for i in range(200)]))
+        skewed = self.input("skewed.txt", "1 0.5 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n")
+        early = self.input("early.tum", "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n")
+        late = self.input("late.tum", "100 0 0 0 0 0 0 1\n101 1 0 0 0 0 0 1\n")
+        self.refused(UNSUPPORTED, "rotation about", line, line, "--align", "icp")
+        self.refused(UNSUPPORTED, "no overlap", near, far, "--align", "gicp", "--align-voxel", "0.5")
+        self.refused(INPUT, skewed.name, near, near, "--align", "icp", "--initial", skewed)
+        self.refused(USAGE, "is none of none, icp", near, near, "--align", "ndt")
+        self.refused(USAGE, "--initial needs an --align", near, near, "--initial", skewed)
+        self.refused(USAGE, "--align trajectory needs", near, near, "--align", "trajectory")
+        self.refused(USAGE, "--align trajectory needs", near, near, "--ref-trajectory", early)
+        trajectories = ("--ref-trajectory", early, "--est-trajectory", late)
+        self.refused(UNSUPPORTED, "time", near, near, "--align", "trajectory", *trajectories)
+
     def test_missing(self):
         self.refused(INPUT, ["none.ply: no such file"], self.inputs / "none.ply", self.estimate)
         self.refused(INPUT, ["none.ply: no such file"], self.reference, self.inputs / "none.ply")

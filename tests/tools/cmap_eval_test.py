@@ -10,6 +10,8 @@ import time
 import unittest
 from pathlib import Path
 
+import numpy as np
+
 from cmap_eval_testing import (
     jsonschema,
     PROGRAM,
@@ -45,6 +47,29 @@ class Results(CmapEval):
             self.assertLessEqual(abs(found - expected), max(1e-9, 1e-6 * abs(expected)), place)
         else:
             self.assertEqual(found, expected, place)
+
+    def test_alignment(self):
+        moved = self.input("T.txt", "1 0 0 0.1\n0 1 0 -0.1\n0 0 1 0.05\n0 0 0 1\n")
+        town, copy = TOWN / "reference.ply", TOWN / "reference.ply"
+        report = self.evaluate(town, copy, "--align", "gicp", "--initial", moved, "--metrics", "chamfer")
+        alignment = report["alignment"]
+        self.assertEqual(alignment["method"], "gicp")
+        self.assertGreater(alignment["before"]["chamfer"]["value"], 0.05)
+        self.assertLess(report["metrics"]["chamfer"]["value"], 1e-4)
+        self.assertTrue(alignment["registration"]["converged"])
+        self.assertLess(abs(alignment["scale_error"]), 1e-12, "a rigid method")
+        # The town's own times: a circle, and the same circle seen from elsewhere.
+        poses = [(0.1 * i, 5 * np.cos(0.1 * i), 5 * np.sin(0.1 * i), 0.1 * i % 1) for i in range(60)]
+        tum = [self.input(f"{n}.tum", "".join(f"{t} {x + n} {y} {z} 0 0 0 1\n" for t, x, y, z in poses)) for n in (0, 2)]
+        report = self.evaluate(
+            town, copy, "--align", "trajectory", "--ref-trajectory", tum[0], "--est-trajectory", tum[1], "--metrics", "chamfer"
+        )
+        self.assertAlmostEqual(report["alignment"]["T_ref_est"][0][3], -2, places=9)
+
+    def test_tanks_and_temples(self):
+        report = self.evaluate(TOWN / "reference.ply", TOWN / "reference.ply", "--as", "tanksandtemples", "--metrics", "f_score")
+        alias = report["aliases"]["tanksandtemples"]
+        self.assertEqual((alias["precision"], alias["recall"], alias["f_score"], alias["tau_m"]), (1, 1, 1, 0.2))
 
     def test_fairness_beside_the_plain_numbers(self):
         metrics = ("--metrics", "default,mme", "--mme-radius", "0.5")

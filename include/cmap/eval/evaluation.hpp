@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "cmap/align/alignment.hpp"
 #include "cmap/core/progress.hpp"
 #include "cmap/eval/metric_catalog.hpp"
 #include "cmap/eval/options.hpp"
@@ -34,11 +35,13 @@ struct Evaluation {
   Eigen::Matrix4d T_ref_est = Eigen::Matrix4d::Identity();
   double overlap = 0.0;  ///< share of estimated points within the overlap distance
   double rmse_m = 0.0;
-  std::vector<MetricRecord> metrics = {};   ///< in the catalog's order
-  nlohmann::ordered_json aliases = {};      ///< by tool; null unless asked for
-  nlohmann::ordered_json intervals = {};    ///< null unless asked for
-  nlohmann::ordered_json unobserved = {};   ///< null unless asked for
-  nlohmann::ordered_json sensitivity = {};  ///< of a SensitivityBand, by who made it; null unless asked for
+  std::vector<MetricRecord> metrics = {};         ///< in the catalog's order
+  nlohmann::ordered_json aliases = {};            ///< by tool; null unless asked for
+  nlohmann::ordered_json intervals = {};          ///< null unless asked for
+  nlohmann::ordered_json unobserved = {};         ///< null unless asked for
+  nlohmann::ordered_json sensitivity = {};        ///< of a SensitivityBand, by who made it; null unless asked for
+  std::optional<Alignment> alignment = {};        ///< what gave T_ref_est, where it was not given
+  std::vector<MetricRecord> metrics_before = {};  ///< of the estimate as it came, where it was aligned
   std::vector<Warning> warnings = {};
   std::vector<std::pair<std::string, double>> stage_seconds = {};
   MapPair pair;                                 ///< both maps after transform, crop and thinning, with their neighbors

@@ -39,11 +39,20 @@ struct EvaluationOptions {
   std::uint64_t bootstrap = 0;    ///< replicates for confidence intervals; 0: none
   double block_m = 10.0;          ///< of the bootstrap
   Observed observed = Observed::kNone;
+  std::string align = "none";  ///< icp, plane, gicp, sim3, global, trajectory, tanksandtemples
+  std::optional<double> align_voxel_m;
+  std::optional<double> align_distance_m;
+  bool align_scale = false;
+  std::string trajectory_fit = "sim3";  ///< first-frame, se3, sim3
+  std::optional<double> tanks_and_temples_tau_m;
   bool sensitivity = false;
   double sensitivity_translation_m = 0.01;
   double sensitivity_rotation_deg = 0.1;
   IndexKind index = IndexKind::kBvh;
 };
+
+/// The threshold of Tanks and Temples: as given, else the largest of the thresholds.
+double tanks_and_temples_tau_m(const EvaluationOptions& options);
 
 enum class OptionKind { kNumber, kCount, kFlag, kNumbers, kWords, kWord };
 

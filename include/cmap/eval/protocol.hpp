@@ -1,0 +1,20 @@
+#pragma once
+
+#include "cmap/eval/evaluation.hpp"
+#include "cmap/io/trajectory_file.hpp"
+
+namespace cmap {
+
+/// What the comparison of a pair starts from.
+struct ProtocolInputs {
+  Eigen::Matrix4d T_initial = Eigen::Matrix4d::Identity();  ///< ref from est: as given, or where the alignment begins
+  std::optional<Trajectory> reference_trajectory = {};      ///< for align = trajectory
+  std::optional<Trajectory> estimate_trajectory = {};
+};
+
+/// The whole comparison as the options say: the scores before, the alignment, the band of small motions, the
+/// evaluation. Throws as align() and evaluate() do; UsageError where align = trajectory and a trajectory is missing.
+Evaluation evaluate_by_protocol(PointCloud reference, PointCloud estimate, const EvaluationOptions& options,
+                                const ProtocolInputs& inputs = {}, const ProgressSink& progress = {});
+
+}  // namespace cmap

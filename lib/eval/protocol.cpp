@@ -1,0 +1,108 @@
+#include "cmap/eval/protocol.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "cmap/align/align.hpp"
+#include "cmap/align/tanks_and_temples.hpp"
+#include "cmap/align/trajectory.hpp"
+#include "cmap/core/error.hpp"
+#include "cmap/eval/sensitivity.hpp"
+
+namespace cmap {
+namespace {
+
+Alignment align_by_trajectories(const EvaluationOptions& options, const ProtocolInputs& inputs) {
+  if (!inputs.reference_trajectory || !inputs.estimate_trajectory) {
+    throw UsageError("align: \"trajectory\" needs the trajectories of both maps");
+  }
+  const TrajectoryFit fit = options.trajectory_fit == "first-frame" ? TrajectoryFit::kFirstFrame
+                            : options.trajectory_fit == "se3"       ? TrajectoryFit::kSe3
+                                                                    : TrajectoryFit::kSim3;
+  return align_trajectories(*inputs.estimate_trajectory, *inputs.reference_trajectory, fit);
+}
+
+Alignment align_estimate(const PointCloud& reference, const PointCloud& estimate, const EvaluationOptions& options,
+                         const ProtocolInputs& inputs) {
+  if (options.align == "trajectory") return align_by_trajectories(options, inputs);
+  if (options.align == "tanksandtemples") {
+    TanksAndTemplesOptions tanks;
+    tanks.tau_m = tanks_and_temples_tau_m(options);
+    tanks.crop = options.crop;
+    return tanks_and_temples(estimate, reference, inputs.T_initial, tanks).alignment;
+  }
+  AlignOptions how;
+  how.T_initial = inputs.T_initial;
+  how.voxel_m = options.align_voxel_m;
+  how.max_distance_m = options.align_distance_m;
+  how.with_scale = options.align_scale;
+  return align(estimate, reference, align_method_from_name(options.align), how);
+}
+
+/// Low values say that the scores may measure the alignment more than the map.
+void warn_of_alignment(const Alignment& alignment, std::vector<Warning>& warnings) {
+  constexpr double kLowOverlap = 0.3, kIllConditioned = 1e-4;
+  for (const std::string& message : alignment.warnings) warnings.push_back({"alignment", message});
+  if (alignment.overlap < kLowOverlap) {
+    warnings.push_back({"alignment_low_overlap",
+                        fmt::format("only {:.1f} % of the estimate met the reference in the alignment: do not trust it",
+                                    100.0 * alignment.overlap)});
+  }
+  if (alignment.condition < kIllConditioned) {
+    warnings.push_back(
+        {"alignment_ill_conditioned", fmt::format("the alignment hardly determines the {} (condition {:.1e})",
+                                                  alignment.weakest, alignment.condition)});
+  }
+  if (!alignment.converged) {
+    warnings.push_back({"alignment_not_converged",
+                        fmt::format("the alignment had not settled after {} iterations", alignment.iterations)});
+  }
+}
+
+/// The plain metrics and nothing beside.
+EvaluationOptions plain(EvaluationOptions options) {
+  options.bootstrap = 0;
+  options.observed = Observed::kNone;
+  options.as.clear();
+  return options;
+}
+
+}  // namespace
+
+Evaluation evaluate_by_protocol(PointCloud reference, PointCloud estimate, const EvaluationOptions& options,
+                                const ProtocolInputs& inputs, const ProgressSink& progress) {
+  std::vector<std::pair<std::string, double>> stages;
+  const auto timed = [&](const char* stage, double done, auto&& work) {
+    if (progress) progress(stage, done);
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    stages.emplace_back(stage, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  };
+  Eigen::Matrix4d T_ref_est = inputs.T_initial;
+  std::optional<Alignment> alignment;
+  std::vector<MetricRecord> before;
+  if (options.align != "none") {
+    timed("scores before", 0.05, [&] { before = evaluate(reference, estimate, plain(options), T_ref_est).metrics; });
+    timed("align", 0.1, [&] { alignment = align_estimate(reference, estimate, options, inputs); });
+    T_ref_est = alignment->T_dst_src;
+  }
+  std::optional<SensitivityBand> band;
+  if (options.sensitivity) {
+    timed("sensitivity", 0.15,
+          [&] { band = sensitivity_band(reference, estimate, plain(options), T_ref_est, progress); });
+  }
+  Evaluation evaluation = evaluate(std::move(reference), std::move(estimate), options, T_ref_est, progress);
+  if (alignment) warn_of_alignment(*alignment, evaluation.warnings);
+  evaluation.alignment = std::move(alignment);
+  evaluation.metrics_before = std::move(before);
+  if (band) {
+    band->include(evaluation);
+    evaluation.sensitivity = band->json(options);
+  }
+  evaluation.stage_seconds.insert(evaluation.stage_seconds.begin(), stages.begin(), stages.end());
+  return evaluation;
+}
+
+}  // namespace cmap
