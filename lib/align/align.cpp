@@ -47,19 +47,31 @@ double median_spacing_m(const PointCloud& cloud) {
   return *middle;
 }
 
+/// On surfaces, point-to-point matches slide by a fraction of the points' spacing an iteration; planes settle at once.
+Alignment settle_on_surfaces(const PointCloud& source, const PointCloud& target, const Sim3Alignment& found) {
+  IcpOptions planes;
+  planes.with_scale = true;
+  planes.levels = {{found.voxel_m, found.max_distance_m, 50}};
+  Alignment result = icp(source, target, found.T_dst_src, planes);
+  result.method = found.method;
+  result.iterations += found.iterations;
+  result.warnings.insert(result.warnings.end(), found.warnings.begin(), found.warnings.end());
+  return result;
+}
+
 Alignment align_sim3(const PointCloud& source, const PointCloud& target, const AlignOptions& options, double voxel_m) {
   Sim3IcpOptions sim3 = Sim3IcpOptions::robust(voxel_m);
   if (options.max_distance_m) {
     sim3.gate0_m = *options.max_distance_m;
     sim3.gate1_m = std::min(sim3.gate1_m, sim3.gate0_m);
   }
-  Sim3Alignment result = sim3_icp(source, target, options.T_initial, sim3);
+  const Sim3Alignment result = sim3_icp(source, target, options.T_initial, sim3);
   if (!result.accepted) {
     // Whoever asks for an alignment has no use for the start.
     const std::string& why = result.warnings.back();
     throw UnsupportedError(why.substr(why.find(": ") + 2));
   }
-  return static_cast<Alignment&&>(result);
+  return settle_on_surfaces(source, target, result);
 }
 
 }  // namespace
