@@ -47,19 +47,76 @@ double median_spacing_m(const PointCloud& cloud) {
   return *middle;
 }
 
+/// On surfaces, point-to-point matches slide by a fraction of the points' spacing an iteration; planes settle at once.
+Alignment settle_on_surfaces(const PointCloud& source, const PointCloud& target, const Sim3Alignment& found) {
+  IcpOptions planes;
+  planes.with_scale = true;
+  planes.levels = {{found.voxel_m, found.max_distance_m, 50}};
+  Alignment result = icp(source, target, found.T_dst_src, planes);
+  result.method = found.method;
+  result.iterations += found.iterations;
+  result.warnings.insert(result.warnings.end(), found.warnings.begin(), found.warnings.end());
+  return result;
+}
+
 Alignment align_sim3(const PointCloud& source, const PointCloud& target, const AlignOptions& options, double voxel_m) {
   Sim3IcpOptions sim3 = Sim3IcpOptions::robust(voxel_m);
   if (options.max_distance_m) {
     sim3.gate0_m = *options.max_distance_m;
     sim3.gate1_m = std::min(sim3.gate1_m, sim3.gate0_m);
   }
-  Sim3Alignment result = sim3_icp(source, target, options.T_initial, sim3);
+  const Sim3Alignment result = sim3_icp(source, target, options.T_initial, sim3);
   if (!result.accepted) {
     // Whoever asks for an alignment has no use for the start.
     const std::string& why = result.warnings.back();
     throw UnsupportedError(why.substr(why.find(": ") + 2));
   }
-  return static_cast<Alignment&&>(result);
+  return settle_on_surfaces(source, target, result);
+}
+
+/// Every k-th point, at most about `most`.
+PointCloud sampled(const PointCloud& cloud, std::size_t most) {
+  const std::size_t step = cloud.size() / most + 1;
+  PointCloud sample;
+  sample.origin = cloud.origin;
+  for (std::size_t i = 0; i < cloud.size(); i += step) sample.positions.push_back(cloud.positions[i]);
+  return sample;
+}
+
+/// Thinning leaves an error of some share of the voxel. Where both clouds hold the same points, as a copy does, the
+/// points themselves leave none: they are tried, and taken where they come to lie on each other.
+void settle_on_common_points(const PointCloud& source, const PointCloud& target, bool with_scale, Alignment& found) {
+  constexpr std::size_t kSample = 100'000;
+  constexpr double kSamePoint = 0.02;  // of the voxel; samples of a surface taken twice are farther apart
+  IcpOptions options;
+  options.metric = IcpMetric::kPoint;
+  options.with_scale = with_scale;
+  options.levels = {{0.0, found.voxel_m, 50}};
+  try {
+    const Alignment settled = icp(sampled(source, kSample), target, found.T_dst_src, options);
+    if (!(settled.rmse_m < kSamePoint * found.voxel_m) || settled.overlap < found.overlap - kSamePoint) return;
+    found.T_dst_src = settled.T_dst_src;
+    found.scale = settled.scale;
+    found.rmse_m = settled.rmse_m;
+  } catch (const UnsupportedError&) {
+    // Too few points so near to each other: no copy.
+  }
+}
+
+Alignment align_by(const PointCloud& source, const PointCloud& target, AlignMethod method, const AlignOptions& options,
+                   double voxel_m) {
+  if (method == AlignMethod::kSim3) return align_sim3(source, target, options, voxel_m);
+  if (method == AlignMethod::kGlobal) {
+    GlobalOptions global;
+    global.with_scale = options.with_scale;
+    global.fine_voxel_m = voxel_m;
+    return global_registration(source, target, global);
+  }
+  IcpOptions icp_options;
+  icp_options.metric = static_cast<IcpMetric>(method);
+  icp_options.with_scale = options.with_scale;
+  icp_options.levels = coarse_to_fine(voxel_m, options.max_distance_m.value_or(kGateVoxels * voxel_m), 100);
+  return icp(source, target, options.T_initial, icp_options);
 }
 
 }  // namespace
@@ -87,18 +144,11 @@ Alignment align(const PointCloud& source, const PointCloud& target, AlignMethod 
   if (!(voxel_m > 0.0) || !std::isfinite(voxel_m)) {
     throw UsageError(fmt::format("voxel_m is {:g}: above 0 is needed", voxel_m));
   }
-  if (method == AlignMethod::kSim3) return align_sim3(source, target, options, voxel_m);
-  if (method == AlignMethod::kGlobal) {
-    GlobalOptions global;
-    global.with_scale = options.with_scale;
-    global.fine_voxel_m = voxel_m;
-    return global_registration(source, target, global);
+  Alignment found = align_by(source, target, method, options, voxel_m);
+  if (found.voxel_m > 0.0) {
+    settle_on_common_points(source, target, options.with_scale || method == AlignMethod::kSim3, found);
   }
-  IcpOptions icp_options;
-  icp_options.metric = static_cast<IcpMetric>(method);
-  icp_options.with_scale = options.with_scale;
-  icp_options.levels = coarse_to_fine(voxel_m, options.max_distance_m.value_or(kGateVoxels * voxel_m), 100);
-  return icp(source, target, options.T_initial, icp_options);
+  return found;
 }
 
 nlohmann::ordered_json alignment_json(const Alignment& a) {

@@ -14,7 +14,8 @@ namespace cmap::test {
 
 inline std::filesystem::path data_folder() {
   if (const char* folder = std::getenv("CMAP_DATA_DIR")) return folder;
-  return std::filesystem::path(std::getenv("CMAP_SOURCE_DIR")) / "../shared/data";
+  const char* source = std::getenv("CMAP_SOURCE_DIR");  // set by CTest
+  return std::filesystem::path(source ? source : ".") / "../shared/data";
 }
 
 #define SKIP_WITHOUT(path) \

@@ -110,7 +110,9 @@ TEST(Protocol, RefusesWhatCannotBeAligned) {
 TEST(Protocol, APlaneIsRefusedByDirection) {
   PointCloud plane = test::uniform_cloud(5000, 3);
   for (Eigen::Vector3f& p : plane.positions) p.z() = 0.0f;
-  const std::string says = refusal_of<UnsupportedError>([&] { evaluate_by_protocol(plane, plane, aligning("plane")); });
+  EvaluationOptions geometry = aligning("plane");
+  geometry.metrics = {"chamfer"};
+  const std::string says = refusal_of<UnsupportedError>([&] { evaluate_by_protocol(plane, plane, geometry); });
   EXPECT_THAT(says, ::testing::AnyOf(HasSubstr("translation along"), HasSubstr("rotation about")));
 }
 

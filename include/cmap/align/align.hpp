@@ -13,7 +13,7 @@ enum class AlignMethod {
   kIcp,     ///< SE(3), point to point
   kPlane,   ///< SE(3), point to plane
   kGicp,    ///< SE(3), plane to plane
-  kSim3,    ///< Sim(3), the paper's regularized ICP: sim3_icp.hpp
+  kSim3,    ///< Sim(3), the paper's regularized ICP (sim3_icp.hpp), settled by GICP with scale
   kGlobal,  ///< from no guess, SE(3) or Sim(3): global.hpp
 };
 

@@ -1,0 +1,78 @@
+#include "cmap/align/align.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "align/align_testing.hpp"
+#include "align/towns.hpp"
+
+namespace cmap {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(Align, EveryMethodFromANearbyStart) {
+  const PointCloud target = test::town(40, 60000, 1), source = test::town(40, 60000, 2);
+  const Similarity T{1.0, rotation_from({0.002, -0.003, 0.01}), {0.2, -0.3, 0.1}};
+  const PointCloud moved = transformed(source, T.inverse().matrix());
+  for (const char* name : {"icp", "plane", "gicp", "sim3"}) {
+    const Alignment found = align(moved, target, align_method_from_name(name));
+    // Other samples of the same town, 0.3 m apart.
+    EXPECT_LT(test::displacement_m(similarity_from(found.T_dst_src), T, moved), 0.1) << name;
+    EXPECT_EQ(found.method, name);
+    EXPECT_GT(found.overlap, 0.9);
+  }
+}
+
+TEST(Align, TheInitialTransformLeadsAcrossAnyDistance) {
+  const PointCloud target = test::town(40, 30000, 3);
+  std::mt19937_64 random(4);
+  const Similarity A = test::random_similarity(random, 1.0, 1.0, 1e6);
+  AlignOptions options;
+  const Similarity off{1.0, rotation_from({0, 0, 0.005}), {0.1, 0.1, 0}};
+  options.T_initial = (off * A.inverse()).matrix();
+  const PointCloud moved = transformed(target, A.matrix());
+  const Similarity found = similarity_from(align(moved, target, AlignMethod::kGicp, options).T_dst_src);
+  // A copy, but thinned on another lattice.
+  EXPECT_LT(test::displacement_m(found, A.inverse(), moved), 0.01);
+}
+
+TEST(Align, TheDefaultVoxelIsBlindToStraysAndFollowsTheScale) {
+  PointCloud cloud = test::town(50, 40000, 5);
+  const double voxel_m = default_align_voxel_m(cloud);
+  // A box of about 100 m by 100 m by 20 m over 400, or twice the spacing, which is larger: 1 / (2 sqrt(4 / m^2)) each.
+  EXPECT_GT(voxel_m, 0.25);
+  EXPECT_LT(voxel_m, 0.8);
+  cloud.positions.emplace_back(1e6f, 0.0f, 0.0f);
+  EXPECT_NEAR(default_align_voxel_m(cloud), voxel_m, 0.01 * voxel_m);
+  const Eigen::Matrix4d doubled = Similarity{2.0, Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()}.matrix();
+  EXPECT_NEAR(default_align_voxel_m(transformed(cloud, doubled)), 2.0 * voxel_m, 0.02 * voxel_m);
+}
+
+TEST(Align, SaysWhatIsWrong) {
+  const PointCloud cloud = test::town(20, 2000, 6);
+  EXPECT_THROW(align_method_from_name("ICP"), UsageError);
+  EXPECT_THROW(align({}, cloud, AlignMethod::kIcp), std::invalid_argument);
+  AlignOptions options;
+  options.voxel_m = -1.0;
+  EXPECT_THROW(align(cloud, cloud, AlignMethod::kIcp, options), UsageError);
+  PointCloud far = cloud;
+  far.origin.z() += 1000.0;
+  for (const auto method : {AlignMethod::kIcp, AlignMethod::kPlane, AlignMethod::kGicp, AlignMethod::kSim3}) {
+    EXPECT_THAT(test::unsupported([&] { align(far, cloud, method); }), HasSubstr("no overlap"));
+  }
+}
+
+TEST(AlignmentJson, HoldsEverything) {
+  Alignment alignment;
+  alignment.T_dst_src(0, 3) = 7.5;
+  alignment.weakest = "scale";
+  alignment.warnings = {"w"};
+  const auto json = alignment_json(alignment);
+  EXPECT_EQ(json["T_dst_src"][0][3], 7.5);
+  EXPECT_EQ(json["T_dst_src"].size(), 4u);
+  EXPECT_EQ(json["weakest_direction"], "scale");
+  EXPECT_EQ(json["warnings"][0], "w");
+}
+
+}  // namespace
+}  // namespace cmap

@@ -1,0 +1,190 @@
+// cmap_align SRC DST: the transform that moves one map, or one trajectory, onto another.
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cmap/align/align.hpp"
+#include "cmap/align/tanks_and_temples.hpp"
+#include "cmap/align/trajectory.hpp"
+#include "files.hpp"
+#include "program.hpp"
+
+namespace {
+
+constexpr const char* kDescription =
+    "Finds the transform T_dst_src that moves a point-cloud map SRC onto another, DST, in the frame of DST.\n"
+    "Methods, from a start near enough (--initial, or the identity): icp (point to point), plane, gicp (all rigid),\n"
+    "sim3 (with scale, held near the start's at first), tanksandtemples (that benchmark's refinement and scores);\n"
+    "without a start: global (rigid, or with --scale). trajectory: SRC and DST are TUM files, paired by time.";
+
+constexpr const char* kExample =
+    "Example:\n"
+    "  cmap_align data_samples/town/estimate.ply data_samples/town/reference.ply --method gicp --voxel 0.2 -o T.txt\n"
+    "\n"
+    "Exit codes: 0 done; 2 wrong usage; 3 an input is missing, malformed or without a finite point;\n"
+    "4 the alignment cannot be determined: no overlap, or a direction that the geometry leaves free; 70 internal "
+    "error.";
+
+struct Arguments {
+  std::string source, target, method = "gicp", initial, output, json, fit = "sim3";
+  double voxel_m = 0.0, max_distance_m = 0.0, tau_m = 0.0, max_gap_s = 0.15;
+  bool scale = false;
+  cmap::CommonArguments common;
+};
+
+void add_options(CLI::App& app, Arguments& a) {
+  const auto positive = CLI::Range(1e-9, 1e9).description("");
+  app.add_option("SRC", a.source, "map or trajectory to move")->required()->type_name("FILE");
+  app.add_option("DST", a.target, "map or trajectory that stays")->required()->type_name("FILE");
+  app.add_option("--method", a.method, "icp, plane, gicp, sim3, global, tanksandtemples, trajectory [gicp]")
+      ->type_name("NAME")
+      ->check(
+          CLI::IsMember({"icp", "plane", "gicp", "sim3", "global", "tanksandtemples", "trajectory"}).description(""));
+  app.add_option("-o,--output", a.output, "transform to write: 4x4 as text")->type_name("FILE");
+  app.add_option("--json", a.json, "everything about the result, to write")->type_name("FILE");
+  app.add_option("--initial", a.initial, "4x4 matrix T_dst_src to start from [identity]")->type_name("FILE");
+  app.add_option("--voxel", a.voxel_m, "the source is thinned to this, the target to half [size of DST / 400]")
+      ->type_name("M")
+      ->check(positive);
+  app.add_option("--max-distance", a.max_distance_m, "farther pairs are no matches [10 voxels]")
+      ->type_name("M")
+      ->check(positive);
+  app.add_flag("--scale", a.scale, "estimate the scale too (icp, plane, gicp, global)");
+  app.add_option("--tau", a.tau_m, "threshold of tanksandtemples")->type_name("M")->check(positive);
+  app.add_option("--fit", a.fit, "of trajectories: first-frame, se3, sim3 [sim3]")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"first-frame", "se3", "sim3"}).description(""));
+  app.add_option("--max-gap", a.max_gap_s, "poses farther apart are not interpolated between [0.15]")
+      ->type_name("S")
+      ->check(positive);
+  cmap::add_common_options(app, a.common, "no table and no warnings");
+  cmap::refuse_empty(app, {"--output", "--json", "--initial"});
+}
+
+/// Options that the method would ignore are refused: they do not do what their giver thinks.
+void refuse_unused(const CLI::App& app, const std::string& method) {
+  const auto refuse = [&](const char* option, std::initializer_list<const char*> methods) {
+    for (const char* m : methods) {
+      if (method == m) return;
+    }
+    if (app.get_option(option)->count() > 0) {
+      throw cmap::UsageError(fmt::format("{} has no meaning for --method {}", option, method));
+    }
+  };
+  refuse("--initial", {"icp", "plane", "gicp", "sim3", "tanksandtemples"});
+  refuse("--voxel", {"icp", "plane", "gicp", "sim3", "global"});
+  refuse("--max-distance", {"icp", "plane", "gicp", "sim3"});
+  refuse("--scale", {"icp", "plane", "gicp", "global"});
+  refuse("--tau", {"tanksandtemples"});
+  refuse("--fit", {"trajectory"});
+  refuse("--max-gap", {"trajectory"});
+}
+
+struct Result {
+  cmap::Alignment alignment;
+  nlohmann::ordered_json json;
+  std::string scores;  ///< further lines of the table
+};
+
+Result align_trajectories(const Arguments& a) {
+  const auto fit = a.fit == "first-frame" ? cmap::TrajectoryFit::kFirstFrame
+                   : a.fit == "se3"       ? cmap::TrajectoryFit::kSe3
+                                          : cmap::TrajectoryFit::kSim3;
+  const cmap::Trajectory source = cmap::read_tum_trajectory(a.source), target = cmap::read_tum_trajectory(a.target);
+  Result result{cmap::align_trajectories(source, target, fit, a.max_gap_s), {}, {}};
+  result.json = cmap::alignment_json(result.alignment);
+  return result;
+}
+
+Result run_tanks_and_temples(const Arguments& a, const cmap::PointCloud& source, const cmap::PointCloud& target,
+                             const Eigen::Matrix4d& T_initial) {
+  cmap::TanksAndTemplesOptions options;
+  if (!(a.tau_m > 0.0)) throw cmap::UsageError("--method tanksandtemples needs the scene's --tau");
+  options.tau_m = a.tau_m;
+  const cmap::TanksAndTemplesResult found = cmap::tanks_and_temples(source, target, T_initial, options);
+  Result result{found.alignment, cmap::alignment_json(found.alignment), {}};
+  result.json["tau_m"] = a.tau_m;
+  result.json["precision"] = found.precision;
+  result.json["recall"] = found.recall;
+  result.json["f_score"] = found.f_score;
+  result.scores = fmt::format("precision   {:.6g}\nrecall      {:.6g}\nF           {:.6g}   at tau {:g} m\n",
+                              found.precision, found.recall, found.f_score, a.tau_m);
+  return result;
+}
+
+Result align_maps(const Arguments& a) {
+  cmap::AlignOptions options;
+  options.T_initial = cmap::transform_or_identity(a.initial);
+  if (a.voxel_m > 0.0) options.voxel_m = a.voxel_m;
+  if (a.max_distance_m > 0.0) options.max_distance_m = a.max_distance_m;
+  options.with_scale = a.scale;
+  const auto [source, target] = cmap::read_both(a.source, a.target);
+  if (a.method == "tanksandtemples") return run_tanks_and_temples(a, source.cloud, target.cloud, options.T_initial);
+  Result result{cmap::align(source.cloud, target.cloud, cmap::align_method_from_name(a.method), options), {}, {}};
+  result.json = cmap::alignment_json(result.alignment);
+  return result;
+}
+
+std::string matrix_text(const Eigen::Matrix4d& T) {
+  std::string text;
+  for (int row = 0; row < 4; ++row) {
+    text += fmt::format("{:.17g} {:.17g} {:.17g} {:.17g}\n", T(row, 0), T(row, 1), T(row, 2), T(row, 3));
+  }
+  return text;
+}
+
+std::string table(const Result& result) {
+  const cmap::Alignment& a = result.alignment;
+  std::string text = fmt::format("method      {}\nscale       {:.8g}\n", a.method, a.scale);
+  text += fmt::format("overlap     {:.4g}   {} of {} points", a.overlap, a.n_matches, a.n_source);
+  text += a.max_distance_m > 0.0 ? fmt::format(" within {:.4g} m\n", a.max_distance_m) : "\n";
+  text += fmt::format("RMSE        {:.6g} m\n", a.rmse_m);
+  if (!a.weakest.empty()) text += fmt::format("condition   {:.3g}   weakest: {}\n", a.condition, a.weakest);
+  if (a.iterations > 0)
+    text += fmt::format("iterations  {}   {}\n", a.iterations, a.converged ? "converged" : "NOT converged");
+  return text + result.scores;
+}
+
+/// Everything is written, or nothing.
+void write_outputs(const Arguments& a, const Result& result) {
+  std::optional<cmap::OutputFile> matrix, json;
+  if (!a.output.empty()) {
+    matrix.emplace(a.output);
+    matrix->write(matrix_text(result.alignment.T_dst_src));
+    matrix->finish();
+  }
+  if (!a.json.empty()) {
+    json.emplace(a.json);
+    json->write(result.json.dump(2) + "\n");
+    json->finish();
+  }
+  if (matrix) matrix->commit();
+  if (json) json->commit();
+}
+
+cmap::ExitCode run(const CLI::App& app, const Arguments& a) {
+  const cmap::ThreadLimit limit(a.common.threads);
+  refuse_unused(app, a.method);
+  cmap::refuse_overwriting({a.source, a.target, a.initial}, {a.output, a.json});
+  for (const std::string& output : {a.output, a.json}) {
+    if (!output.empty()) cmap::require_writable(output);
+  }
+  const Result result = a.method == "trajectory" ? align_trajectories(a) : align_maps(a);
+  write_outputs(a, result);
+  if (a.common.quiet) return cmap::ExitCode::kDone;
+  fmt::print("{}", table(result));
+  if (a.output.empty()) fmt::print("T_dst_src\n{}", matrix_text(result.alignment.T_dst_src));
+  for (const std::string& warning : result.alignment.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  return cmap::ExitCode::kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(kDescription, "cmap_align");
+  app.footer(kExample);
+  Arguments arguments;
+  add_options(app, arguments);
+  return cmap::run_program(app, argc, argv, [&] { return run(app, arguments); });
+}
