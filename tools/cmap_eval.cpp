@@ -4,10 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <list>
 #include <optional>
@@ -123,12 +121,6 @@ void check_outputs(const Arguments& a) {
   }
 }
 
-void print(const std::string& text) {
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
-    throw cmap::UsageError(fmt::format("standard output: {}", std::strerror(errno)));
-  }
-}
-
 /// Prints and writes everything: all outputs or none, and none before the last one is complete.
 void deliver(const Arguments& arguments, const cmap::Evaluation& evaluation, const nlohmann::ordered_json& report,
              const std::optional<cmap::FigureModule>& figures) {
@@ -144,7 +136,7 @@ void deliver(const Arguments& arguments, const cmap::Evaluation& evaluation, con
   write(arguments.html, [&](cmap::OutputFile& file) { cmap::write_html_report(report, evaluation, file); });
   write(arguments.figure, [&](cmap::OutputFile& file) { figures->write(evaluation, arguments.figure, file); });
   write(arguments.output, [&](cmap::OutputFile& file) { file.write(report_text); });
-  if (!arguments.common.quiet) print(arguments.format == "json" ? report_text : cmap::format_table(report));
+  if (!arguments.common.quiet) cmap::print(arguments.format == "json" ? report_text : cmap::format_table(report));
   for (cmap::OutputFile& file : files) file.commit();
 }
 

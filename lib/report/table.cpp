@@ -1,54 +1,16 @@
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "cmap/report/report.hpp"
+#include "report/score_text.hpp"
 
 namespace cmap {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view kMissing = "-";
-
-/// Four significant digits, as readers of such tables expect; plain for ordinary sizes.
-std::string digits(const Json& value) {
-  if (!value.is_number()) return std::string(kMissing);
-  // Rounded first: 999.96 has four digits before the point.
-  const double v = std::stod(fmt::format("{:.3e}", value.get<double>()));
-  if (v == 0.0) return "0";
-  const double magnitude = std::abs(v);
-  if (magnitude < 1e-4 || magnitude >= 1e6) return fmt::format("{:.3e}", v);
-  const int before_point = static_cast<int>(std::floor(std::log10(magnitude))) + 1;
-  return fmt::format("{:.{}f}", value.get<double>(), std::max(0, 4 - before_point));
-}
-
-/// A share in percent, without the sign; one that is not zero does not look like it.
-std::string hundredths(const Json& value) {
-  if (!value.is_number()) return std::string(kMissing);
-  const double percent = 100.0 * value.get<double>();
-  return percent > 0.0 && percent < 0.005 ? "< 0.01" : fmt::format("{:.2f}", percent);
-}
-
-std::string percent(const Json& value) { return value.is_number() ? hundredths(value) + " %" : std::string(kMissing); }
-
-std::string with_thousands(const Json& count) {
-  std::string text = std::to_string(count.get<std::uint64_t>());
-  for (std::size_t place = text.size(); place > 3; place -= 3)
-    text.insert(text.begin() + static_cast<std::ptrdiff_t>(place - 3), ',');
-  return text;
-}
-
 std::string_view arrow(const Json& metric) {
   const Json& better = metric.at("better");
   return better == "lower" ? "↓" : better == "higher" ? "↑" : " ";
-}
-
-/// Pads by characters, not bytes: arrows and deltas are several bytes long.
-std::string padded(std::string_view text, std::size_t width) {
-  std::size_t characters = 0;
-  for (char c : text) characters += (static_cast<unsigned char>(c) & 0xC0) != 0x80 ? 1 : 0;
-  return std::string(text) + std::string(width > characters ? width - characters : 0, ' ');
 }
 
 std::string row(std::string_view title, const Json& metric, const std::string& value, std::string_view unit,
@@ -57,11 +19,6 @@ std::string row(std::string_view title, const Json& metric, const std::string& v
   const std::string line = fmt::format("  {} {} {} {} {} {}", padded(title, 30), padded(symbol, 8), arrow(metric),
                                        fmt::format("{:>11}", value), padded(unit, 10), remark);
   return line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
-}
-
-bool is_share(const MetricInfo& info) {
-  return info.id == "overlap" || info.id == "local_color_recall" || info.id == "fitness" || info.id == "completeness" ||
-         info.id == "f_score";
 }
 
 std::string meters(const Json& v) { return fmt::format("{} m", v.get<double>()); }
@@ -104,7 +61,7 @@ std::string threshold_label(const Json& entry) {
 std::string unit_of(const MetricInfo& info) { return info.unit == "1" ? "" : std::string(info.unit); }
 
 std::string value_rows(const MetricInfo& info, const Json& metric) {
-  const bool share = is_share(info);
+  const bool share = is_share(info.id);
   const auto shown = [&](const Json& value) { return share ? hundredths(value) : digits(value); };
   const std::string unit = share ? "%" : unit_of(info);
   if (metric.contains("per_threshold")) {
