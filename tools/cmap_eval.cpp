@@ -140,20 +140,6 @@ void deliver(const Arguments& arguments, const cmap::Evaluation& evaluation, con
   for (cmap::OutputFile& file : files) file.commit();
 }
 
-/// The command line as one would type it into a shell.
-std::string as_typed(const char* const* argv, int argc) {
-  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%#";
-  std::string command;
-  for (std::string word : std::vector<std::string>(argv, argv + argc)) {
-    if (word.empty() || word.find_first_not_of(kPlain) != word.npos) {
-      for (std::size_t at = 0; (at = word.find('\'', at)) != word.npos; at += 4) word.replace(at, 1, "'\\''");
-      word = fmt::format("'{}'", word);
-    }
-    command += fmt::format("{}{}", command.empty() ? "" : " ", word);
-  }
-  return command;
-}
-
 ExitCode run(const Arguments& arguments, const std::string& command) {
   const auto start = std::chrono::steady_clock::now();
   const auto started = fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now()));
@@ -201,5 +187,5 @@ int main(int argc, char** argv) {
   app.footer(kExample);
   Arguments arguments;
   add_options(app, arguments);
-  return cmap::run_program(app, argc, argv, [&] { return run(arguments, as_typed(argv, argc)); });
+  return cmap::run_program(app, argc, argv, [&] { return run(arguments, cmap::shell_command({argv, argv + argc})); });
 }

@@ -10,7 +10,7 @@ namespace cmap {
 using Json = nlohmann::ordered_json;
 
 std::string digits(const Json& value) {
-  if (!value.is_number()) return std::string(kMissing);
+  if (!value.is_number()) return std::string(kNoValue);
   // Rounded first: 999.96 has four digits before the point.
   const double v = std::stod(fmt::format("{:.3e}", value.get<double>()));
   if (v == 0.0) return "0";
@@ -21,12 +21,12 @@ std::string digits(const Json& value) {
 }
 
 std::string hundredths(const Json& value) {
-  if (!value.is_number()) return std::string(kMissing);
+  if (!value.is_number()) return std::string(kNoValue);
   const double percent = 100.0 * value.get<double>();
   return percent > 0.0 && percent < 0.005 ? "< 0.01" : fmt::format("{:.2f}", percent);
 }
 
-std::string percent(const Json& value) { return value.is_number() ? hundredths(value) + " %" : std::string(kMissing); }
+std::string percent(const Json& value) { return value.is_number() ? hundredths(value) + " %" : std::string(kNoValue); }
 
 std::string with_thousands(const Json& count) {
   std::string text = std::to_string(count.get<std::uint64_t>());

@@ -8,7 +8,7 @@
 
 namespace cmap {
 
-inline constexpr std::string_view kMissing = "-";
+inline constexpr std::string_view kNoValue = "-";
 
 /// Four significant digits, as readers of such tables expect; plain for ordinary sizes. A dash for what is no number.
 std::string digits(const nlohmann::ordered_json& value);

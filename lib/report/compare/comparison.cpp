@@ -102,7 +102,7 @@ std::string percent_text(double share) {
 }
 
 std::string gain_text(const ScoreKind& kind, const std::optional<double>& gained, const std::optional<double>& share) {
-  if (!gained) return std::string(kMissing);
+  if (!gained) return std::string(kNoValue);
   const double scale = kind.share ? 100.0 : 1.0;
   std::string text = signed_text(digits(scale * std::abs(*gained)), *gained);
   if (share) text += fmt::format(" ({} %)", signed_text(percent_text(std::abs(*share)), *share));

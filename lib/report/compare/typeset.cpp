@@ -79,8 +79,8 @@ std::string markdown_table(const ScoreTable& table) {
 }
 
 std::string latex_cell(const TableCell& cell) {
-  if (cell.text == kMissing) return "--";
-  if (cell.text == kFailed) return "$\\times$";
+  if (cell.text == kNoValue) return "--";
+  if (cell.text == kFailedMark) return "$\\times$";
   const char* color = cell.mark == Mark::kBest     ? "\\cellcolor{red!35}"
                       : cell.mark == Mark::kSecond ? "\\cellcolor{orange!35}"
                                                    : "";
