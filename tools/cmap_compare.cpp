@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <list>
 #include <map>
 
 #include "cmap/core/error.hpp"
@@ -27,17 +28,18 @@ constexpr const char* kExample =
     "  cmap_eval data_samples/town/reference.ply data_samples/town/estimate.ply --quiet -o a.json\n"
     "  cmap_eval data_samples/town/reference.ply data_samples/town/reference.ply --quiet -o b.json\n"
     "  cmap_compare a.json b.json --baseline a.json\n"
+    "  cmap_compare a.json b.json --figure chart.svg --format html -o comparison.html\n"
     "  cmap_compare a.json b.json --names Ours,Truth --metrics color,AC --format latex -o table.tex\n"
     "\n"
     "Formats: text (* best, + second best), markdown, csv (all digits, empty where there is no value), latex "
     "(booktabs,\n"
     "xcolor), html (one file, sortable, offline).\n"
     "Exit codes: 0 done; 2 wrong usage, no reports, or reports that do not compare; 3 a report is missing or damaged;\n"
-    "70 internal error.";
+    "4 pictures other than .svg are not built; 70 internal error.";
 
 struct Arguments {
   std::vector<std::string> reports;
-  std::string format = "text", baseline, output;
+  std::string format = "text", baseline, output, figure;
   std::vector<std::string> metrics, names;
 };
 
@@ -64,7 +66,8 @@ void add_options(CLI::App& app, Arguments& a) {
       ->expected(1)
       ->delimiter(',');
   app.add_option("-o,--output", a.output, "write here in place of standard output")->type_name("FILE");
-  cmap::refuse_empty(app, {"--baseline", "--metrics", "--names", "--output"});
+  app.add_option("--figure", a.figure, "chart of every metric, and curves: .svg, .png, .jpg, .tif")->type_name("FILE");
+  cmap::refuse_empty(app, {"--baseline", "--figure", "--metrics", "--names", "--output"});
 }
 
 /// Index of the baseline among the reports, which it joins as the first unless it is one of them.
@@ -80,20 +83,28 @@ std::size_t place_baseline(const std::string& baseline, std::vector<std::string>
 ExitCode run(Arguments arguments) {
   cmap::ComparisonOptions options{arguments.metrics, std::nullopt};
   if (!arguments.baseline.empty()) options.baseline = place_baseline(arguments.baseline, arguments.reports);
-  cmap::refuse_overwriting(arguments.reports, {arguments.output});
-  if (!arguments.output.empty()) cmap::require_writable(arguments.output);
+  cmap::refuse_overwriting(arguments.reports, {arguments.output, arguments.figure});
+  for (const std::string& output : {arguments.output, arguments.figure}) {
+    if (!output.empty()) cmap::require_writable(output);
+  }
+  if (!arguments.figure.empty()) cmap::check_figure_name(arguments.figure);
   std::vector<cmap::SavedReport> reports;
   for (const std::string& path : arguments.reports) reports.push_back(cmap::read_report(path));
   cmap::name_reports(reports, arguments.names);
   cmap::require_comparable(reports);
   const std::string text = cmap::format_comparison(reports, options, kFormats.at(arguments.format));
-  if (arguments.output.empty()) {
-    cmap::print(text);
-    return ExitCode::kDone;
+  std::list<cmap::OutputFile> files;
+  if (!arguments.figure.empty()) {
+    cmap::write_comparison_figure(reports, options, arguments.figure, files.emplace_back(arguments.figure));
+    files.back().finish();
   }
-  cmap::OutputFile file(arguments.output);
-  file.write(text);
-  file.commit();
+  if (!arguments.output.empty()) {
+    files.emplace_back(arguments.output).write(text);
+    files.back().finish();
+  } else {
+    cmap::print(text);
+  }
+  for (cmap::OutputFile& file : files) file.commit();
   return ExitCode::kDone;
 }
 

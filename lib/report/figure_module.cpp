@@ -22,6 +22,7 @@ FigureModule::FigureModule() {
   if (library == nullptr) throw UnsupportedError(fmt::format("no figures in this build: {}", ::dlerror()));
   find_function(library, "cmap_figure_check_name", check_name_);
   find_function(library, "cmap_figure_write", write_);
+  find_function(library, "cmap_figure_write_drawing", write_drawing_);
 }
 
 }  // namespace cmap

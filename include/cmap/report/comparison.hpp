@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "cmap/io/output_file.hpp"
+
 namespace cmap {
 
 /// A report that an evaluation left in a file.
@@ -45,5 +47,13 @@ enum class ComparisonFormat { kText, kMarkdown, kCsv, kLatex, kHtml };
 /// Throws UsageError for an unknown metric, or where none is left.
 std::string format_comparison(const std::vector<SavedReport>& reports, const ComparisonOptions& options,
                               ComparisonFormat format);
+
+/// Throws UsageError for a name that is no picture's; UnsupportedError where pictures other than .svg are not built.
+void check_figure_name(const std::filesystem::path& name);
+
+/// A chart of bars for each metric and of curves for each with thresholds, and of local color recall against tau where
+/// a report has it: as SVG, or as a picture of the name's format.
+void write_comparison_figure(const std::vector<SavedReport>& reports, const ComparisonOptions& options,
+                             const std::filesystem::path& name, OutputFile& file);
 
 }  // namespace cmap

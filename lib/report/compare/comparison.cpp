@@ -7,11 +7,9 @@
 #include <cmath>
 #include <map>
 
-#include "cmap/core/error.hpp"
-#include "cmap/eval/metric_catalog.hpp"
+#include "report/compare/comparison_scores.hpp"
 #include "report/compare/html_tables.hpp"
 #include "report/compare/score_table.hpp"
-#include "report/compare/scores.hpp"
 #include "report/score_text.hpp"
 
 namespace cmap {
@@ -19,58 +17,19 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The scores of all reports.
-struct Comparison {
-  std::vector<std::string> names;
-  std::vector<std::vector<Score>> scores;  ///< by report
-  std::vector<ScoreKind> kinds;            ///< rows
-};
-
-bool is_chosen(const MetricSelection* selection, const ScoreKind& kind) {
-  return selection == nullptr || selection->contains(kind.metric);
-}
-
-Comparison compare(const std::vector<SavedReport>& reports, const ComparisonOptions& options) {
-  EvaluationOptions wanted;
-  wanted.metrics = options.metrics;
-  const MetricSelection selection = select_metrics(wanted);
-  Comparison comparison;
-  for (const SavedReport& report : reports) {
-    comparison.names.push_back(one_line(report.name));
-    comparison.scores.push_back(scores_of(report.json));
-  }
-  for (const ScoreKind& kind : kinds_of(comparison.scores)) {
-    if (is_chosen(options.metrics.empty() ? nullptr : &selection, kind)) comparison.kinds.push_back(kind);
-  }
-  if (comparison.kinds.empty()) {
-    throw UsageError(fmt::format("metrics: no report has any of {}", fmt::join(options.metrics, ", ")));
-  }
-  return comparison;
-}
-
-Json json_of(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
-
-std::string shown(const ScoreKind& kind, const std::optional<double>& value) {
-  return kind.share ? hundredths(json_of(value)) : digits(json_of(value));
-}
-
-std::string shown_unit(const ScoreKind& kind) { return kind.share ? "%" : kind.unit == "1" ? "" : kind.unit; }
-
-std::string arrow(const ScoreKind& kind) { return kind.better == "lower" ? "↓" : kind.better == "higher" ? "↑" : ""; }
-
 TableRow row_heads(const ScoreKind& kind) { return {{kind.title, kind.symbol, arrow(kind), shown_unit(kind)}, {}}; }
 
 const std::vector<std::string> kHeads{"metric", "symbol", "", "unit"};
 
 std::string all_digits(const std::optional<double>& value) { return value ? fmt::format("{}", *value) : "no value"; }
 
-ScoreTable score_table(const Comparison& comparison) {
+ScoreTable score_table(const ComparisonScores& comparison) {
   ScoreTable table{"scores", "", kHeads, comparison.names, {}, {}};
   for (const ScoreKind& kind : comparison.kinds) {
     TableRow& row = table.rows.emplace_back(row_heads(kind));
     for (const auto& scores : comparison.scores) {
       const std::optional<double> value = value_of(scores, kind);
-      row.cells.push_back({shown(kind, value), value, Mark::kNone, all_digits(value)});
+      row.cells.push_back({shown_value(kind, value), value, Mark::kNone, all_digits(value)});
     }
     std::vector<TableCell*> cells;
     for (TableCell& cell : row.cells) cells.push_back(&cell);
@@ -113,7 +72,7 @@ Mark direction(const std::optional<double>& gained) {
   return !gained || *gained == 0.0 ? Mark::kNone : *gained > 0.0 ? Mark::kBetter : Mark::kWorse;
 }
 
-ScoreTable gain_table(const Comparison& comparison, std::size_t baseline) {
+ScoreTable gain_table(const ComparisonScores& comparison, std::size_t baseline) {
   ScoreTable table{"gains", fmt::format("Better (+) or worse (-) than {}", comparison.names[baseline]), kHeads, {}, {},
                    {}};
   for (const ScoreKind& kind : comparison.kinds) {
@@ -155,7 +114,7 @@ std::vector<std::string> notes_on(const std::vector<SavedReport>& reports, Compa
   return notes;
 }
 
-std::string csv(const Comparison& comparison, const std::optional<std::size_t>& baseline) {
+std::string csv(const ComparisonScores& comparison, const std::optional<std::size_t>& baseline) {
   std::string text = "metric,part,at_m,unit,better";
   for (const std::string& name : comparison.names) text += fmt::format(",{}", csv_field(name));
   for (std::size_t i = 0; baseline && i < comparison.names.size(); ++i) {
@@ -189,7 +148,7 @@ std::string html(const std::vector<ScoreTable>& tables) {
 
 std::string format_comparison(const std::vector<SavedReport>& reports, const ComparisonOptions& options,
                               ComparisonFormat format) {
-  const Comparison comparison = compare(reports, options);
+  const ComparisonScores comparison = scores_to_compare(reports, options);
   if (format == ComparisonFormat::kCsv) return csv(comparison, options.baseline);
   std::vector<ScoreTable> tables{score_table(comparison)};
   if (options.baseline && reports.size() > 1) tables.push_back(gain_table(comparison, *options.baseline));

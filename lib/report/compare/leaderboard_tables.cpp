@@ -224,8 +224,8 @@ std::vector<std::string> leaderboard_notes(const LeaderboardManifest& manifest,
   std::vector<std::string> notes;
   for (const LeaderboardPair& pair : pairs) {
     if (pair.state == PairState::kDone) continue;
-    notes.push_back(fmt::format("{} {} / {}: {}", pair.state == PairState::kFailed ? kFailedMark : kNoValue, pair.sequence,
-                                pair.method, pair.reason));
+    notes.push_back(fmt::format("{} {} / {}: {}", pair.state == PairState::kFailed ? kFailedMark : kNoValue,
+                                pair.sequence, pair.method, pair.reason));
   }
   if (!manifest.published) return notes;
   const PublishedScores& published = *manifest.published;
