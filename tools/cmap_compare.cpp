@@ -56,15 +56,15 @@ void add_options(CLI::App& app, Arguments& a) {
       ->check(CLI::IsMember({"text", "markdown", "csv", "latex", "html"}).description(""));
   app.add_option("--metrics", a.metrics, "groups, metric ids or symbols [all in the reports]")
       ->type_name("LIST")
-      ->expected(1)
-      ->delimiter(',');
+      ->delimiter(',')
+      ->allow_extra_args(false);
   app.add_option("--baseline", a.baseline,
                  "also say by how much the others are better (+) or worse (-) than this report")
       ->type_name("A.json");
   app.add_option("--names", a.names, "headings of the columns [file names]")
       ->type_name("A,B,...")
-      ->expected(1)
-      ->delimiter(',');
+      ->delimiter(',')
+      ->allow_extra_args(false);
   app.add_option("-o,--output", a.output, "write here in place of standard output")->type_name("FILE");
   app.add_option("--figure", a.figure, "chart of every metric, and curves: .svg, .png, .jpg, .tif")->type_name("FILE");
   cmap::refuse_empty(app, {"--baseline", "--figure", "--metrics", "--names", "--output"});

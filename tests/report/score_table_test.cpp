@@ -65,9 +65,9 @@ ScoreTable small_table() {
 TEST(Typeset, Text) {
   EXPECT_EQ(typeset({small_table()}, TableFormat::kText),
             "Chamfer ↓\n"
-            "method          A   B_2\n"
-            "Ours & co  1.000*     x\n"
-            "x|y        12.00+     -\n"
+            "method         A   B_2\n"
+            "Ours & co  1.000*    x\n"
+            "x|y        12.00+    -\n"
             "\n"
             "a note\n");
 }

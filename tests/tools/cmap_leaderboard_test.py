@@ -228,11 +228,11 @@ class Leaderboard(CmapEval):
         self.assertNotIn("none.ply", text)
 
     def test_the_same_for_any_number_of_threads_and_place(self):
-        self.run_board(self.outputs / "one", "--threads", 1)
+        self.run_board(self.outputs / "one", "--threads", "1")
         elsewhere = self.folder / "elsewhere"
         shutil.copytree(self.inputs, elsewhere)
         result = self.run_program(
-            self.manifest(), "--data-root", elsewhere, "-o", self.outputs / "two", "--threads", 2, program=(LEADERBOARD,)
+            self.manifest(), "--data-root", elsewhere, "-o", self.outputs / "two", "--threads", "2", program=(LEADERBOARD,)
         )
         self.assertEqual(result.returncode, DONE)
         self.assertEqual(files_below(self.outputs / "one"), files_below(self.outputs / "two"))
