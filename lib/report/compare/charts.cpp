@@ -85,7 +85,8 @@ class Charts {
   void bars(const Panel& panel, const BarChart& chart);
   void curves(const Panel& panel, const CurveChart& chart);
 
-  static constexpr double kBarHeight = 22.0, kHeadHeight = 28.0, kPlotHeight = 220.0, kAxisHeight = 44.0;
+  static constexpr double kBarHeight = 22.0, kHeadHeight = 28.0, kCurveHeadHeight = 40.0, kPlotHeight = 220.0,
+                          kAxisHeight = 44.0;
   Drawing drawing;
 
  private:
@@ -124,7 +125,7 @@ void Charts::bars(const Panel& panel, const BarChart& chart) {
   const double zero = left - low * scale;
   for (std::size_t i = 0; i < chart.values.size(); ++i) {
     const double y = panel.y + kHeadHeight + (static_cast<double>(i) + 0.5) * kBarHeight;
-    text(left - 8.0, y, shortened(names_[i], 10), kTextSize, kMuted, Anchor::kRight);
+    text(left - 8.0, y, shortened(names_[i], 12), kTextSize, kMuted, Anchor::kRight);
     const double end = zero + chart.values[i].value_or(0.0) * scale;
     if (chart.values[i]) {
       box(std::min(zero, end), y - 0.36 * kBarHeight, std::abs(end - zero), 0.72 * kBarHeight, color_of_report(i));
@@ -137,7 +138,7 @@ void Charts::bars(const Panel& panel, const BarChart& chart) {
 
 void Charts::axes(const Panel& panel, double left, double x_end, double y_end, const std::string& x_title) {
   constexpr int kTicks = 4;
-  const double top = panel.y + kHeadHeight, bottom = top + kPlotHeight, right = panel.x + panel.width;
+  const double top = panel.y + kCurveHeadHeight, bottom = top + kPlotHeight, right = panel.x + panel.width;
   for (int i = 0; i <= kTicks; ++i) {
     const double share = static_cast<double>(i) / kTicks;
     const double y = bottom - share * kPlotHeight, x = left + share * (right - left);
@@ -158,7 +159,7 @@ void Charts::curves(const Panel& panel, const CurveChart& chart) {
     for (const auto& value : values) highest = std::max(highest, value.value_or(0.0));
   }
   const double x_end = round_number_above(*std::ranges::max_element(chart.x)), y_end = round_number_above(highest);
-  const double left = panel.x + kLabels, bottom = panel.y + kHeadHeight + kPlotHeight;
+  const double left = panel.x + kLabels, bottom = panel.y + kCurveHeadHeight + kPlotHeight;
   axes(panel, left, x_end, y_end, chart.x_title);
   for (std::size_t report = 0; report < chart.y.size(); ++report) {
     std::vector<std::array<double, 2>> run;
@@ -189,7 +190,7 @@ Drawing draw_charts(const std::vector<std::string>& names, const std::vector<Bar
                       Charts::kHeadHeight + Charts::kBarHeight * static_cast<double>(names.size()));
   for (std::size_t i = 0; i < bars.size(); ++i) charts.bars(bar_grid.panel(i), bars[i]);
   const Grid curve_grid(bar_grid.bottom(bars.size()), 2,
-                        Charts::kHeadHeight + Charts::kPlotHeight + Charts::kAxisHeight);
+                        Charts::kCurveHeadHeight + Charts::kPlotHeight + Charts::kAxisHeight);
   for (std::size_t i = 0; i < curves.size(); ++i) charts.curves(curve_grid.panel(i), curves[i]);
   charts.drawing.width = kWidth;
   charts.drawing.height = curve_grid.bottom(curves.size()) - kGap + kMargin;

@@ -140,6 +140,7 @@ std::string csv(const ComparisonScores& comparison, const std::optional<std::siz
 
 std::string html(const std::vector<ScoreTable>& tables) {
   HtmlPage page("Comparison of maps");
+  page.add_key("of each row; - no value. The tables sort by their headings.");
   for (const ScoreTable& table : tables) page.add_table(table);
   return page.finish();
 }

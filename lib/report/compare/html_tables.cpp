@@ -81,6 +81,12 @@ void HtmlPage::add_paragraph(std::string_view text) {
   body_ += fmt::format("<p class=\"note\">{}</p>\n", escaped_html(text));
 }
 
+void HtmlPage::add_key(std::string_view text) {
+  body_ += fmt::format(
+      "<p class=\"note key\"><span class=\"best\">best</span><span class=\"second\">second best</span>{}</p>\n",
+      escaped_html(text));
+}
+
 void HtmlPage::add_table(const ScoreTable& table) {
   body_ += fmt::format("<div class=\"frame\"><table id=\"{}\">", escaped_html(table.id));
   if (!table.title.empty()) body_ += fmt::format("<caption>{}</caption>", escaped_html(table.title));

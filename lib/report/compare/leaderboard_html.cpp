@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "cmap/eval/metric_catalog.hpp"
 #include "report/compare/html_tables.hpp"
 #include "report/compare/leaderboard_tables.hpp"
 
@@ -64,19 +65,30 @@ void add_gallery(HtmlPage& page, const std::vector<LeaderboardPair>& pairs) {
   page.add(fmt::format("<div class=\"gallery\">\n{}</div>\n", figures));
 }
 
-/// One heading for each metric; its thresholds follow each other.
+std::string group_of(const ScoreSection& section) {
+  const MetricInfo* info = find_metric(section.kind.metric);
+  const std::string_view group = info == nullptr ? "other" : info->group;
+  std::string title(group == "mme" ? "entropy" : group == "color+" ? "color, beyond the paper" : group);
+  title.front() = static_cast<char>(title.front() - 'a' + 'A');
+  return title;
+}
+
+/// One heading for each group of metrics; what was published stands beside what was computed.
 void add_sections(HtmlPage& page, const std::vector<ScoreSection>& sections) {
-  std::string metric;
+  std::string group;
   for (const ScoreSection& section : sections) {
-    if (section.kind.metric != metric) {
-      metric = section.kind.metric;
-      page.add_heading(heading_of(section.kind), metric);
+    if (group_of(section) != group) {
+      if (!group.empty()) page.add("</div>\n");
+      group = group_of(section);
+      page.add_heading(group);
+      page.add("<div class=\"tables\">\n");
     }
-    page.add("<div class=\"tables\">\n");
+    page.add(fmt::format("<div class=\"tables\" id=\"{}\">\n", escaped_html(section.kind.id())));
     page.add_table(section.computed);
     if (section.published) page.add_table(*section.published);
     page.add("</div>\n");
   }
+  if (!group.empty()) page.add("</div>\n");
 }
 
 void add_navigation(HtmlPage& page, const std::vector<ScoreSection>& sections) {
@@ -85,7 +97,8 @@ void add_navigation(HtmlPage& page, const std::vector<ScoreSection>& sections) {
   for (const ScoreSection& section : sections) {
     if (section.kind.metric == metric) continue;
     metric = section.kind.metric;
-    page.add(fmt::format("<a href=\"#{}\">{}</a>\n", escaped_html(metric), escaped_html(heading_of(section.kind))));
+    page.add(fmt::format("<a href=\"#{}\">{}</a>\n", escaped_html(section.kind.id()),
+                         escaped_html(heading_of(section.kind))));
   }
   page.add("<a href=\"#maps\">Maps</a>\n</nav>\n");
 }
@@ -105,9 +118,7 @@ void add_parameters(HtmlPage& page, const EvaluationOptions& options) {
 std::string leaderboard_html(const LeaderboardManifest& manifest, const std::vector<LeaderboardPair>& pairs) {
   const std::vector<ScoreSection> sections = leaderboard_sections(manifest, pairs);
   HtmlPage page("Leaderboard of maps");
-  page.add(
-      "<p class=\"note key\"><span class=\"best\">best</span><span class=\"second\">second best</span>of each "
-      "column; - no value or no map, x failed; every table sorts by its headings.</p>\n");
+  page.add_key("of each column; - no value or no map, x failed. Every table sorts by its headings.");
   add_navigation(page, sections);
   add_sections(page, sections);
   if (const std::optional<ScoreTable> registration = registration_table(manifest)) {
