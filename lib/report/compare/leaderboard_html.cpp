@@ -25,8 +25,8 @@ std::string link(const LeaderboardPair& pair, const char* file, const char* text
 
 std::string map_cell(const LeaderboardPair& pair) {
   if (pair.state != PairState::kDone) {
-    const char* mark = pair.state == PairState::kFailed ? "failed" : "missing";
-    return fmt::format("<td class=\"none\">{}: {}</td>", mark, escaped_html(pair.reason));
+    return fmt::format("<td class=\"none\" title=\"{}\">{}</td>", escaped_html(pair.reason),
+                       pair.state == PairState::kFailed ? "failed" : "missing");
   }
   return fmt::format("<td>{} · {}{}</td>", link(pair, "report.html", "report"), link(pair, "report.json", "JSON"),
                      pair.has_figure ? " · " + link(pair, "figure.png", "picture") : "");
