@@ -176,6 +176,24 @@ class Leaderboard(CmapEval):
         self.run_board(killed)
         self.assertEqual(files_below(killed), expected)
 
+    def test_a_pair_that_dies_stops_no_other(self):
+        """As the system does where memory runs out: it kills the process of the pair at hand."""
+        output = self.outputs / "board"
+        process = subprocess.Popen(
+            [LEADERBOARD, *self.arguments(output)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
+        children = Path(f"/proc/{process.pid}/task/{process.pid}/children")
+        while process.poll() is None and not (child := children.read_text().split()):
+            time.sleep(0.001)
+        os.kill(int(child[0]), 9)
+        text, log = process.communicate()
+        self.assertEqual(process.returncode, DONE, log)
+        self.assertIn("x hill / Coarse: its evaluation was ended by signal 9", text)
+        self.assertEqual(log.count("evaluated in"), 3, "the others are done")
+        text, log = self.run_board()
+        self.assertEqual((log.count("done before"), log.count("evaluated in")), (3, 1))
+        self.assertNotIn("signal", text)
+
     def check_partial(self, folder):
         """Whatever has its name is complete."""
         for path in folder.rglob("*.json"):

@@ -86,10 +86,10 @@ struct LeaderboardRun {
 
 /// Evaluates every pair that the output folder does not hold yet: pairs/SEQUENCE/METHOD/ gets report.json, report.html,
 /// figure.png (where figures are built) and, last, pair.json: the content of the inputs, parameters and version that
-/// the others belong to, and their checksums. What does not match is evaluated again. A pair that cannot be evaluated
-/// has failed and the others go on. Killed at any moment and started again, it leaves the same bytes. Throws UsageError
-/// where something cannot be written, another run is writing there, or an input is below the output; InputError where
-/// the data root is no folder.
+/// the others belong to, and their checksums. What does not match is evaluated again. Each pair has
+/// a process of its own: one that cannot be evaluated, or dies, has failed and the others go on. Killed at any moment
+/// and started again, it leaves the same bytes. Throws UsageError where something cannot be written, another run is
+/// writing there, or an input is below the output; InputError where the data root is no folder.
 std::vector<LeaderboardPair> evaluate_leaderboard(const LeaderboardManifest& manifest, const LeaderboardRun& run);
 
 /// All tables, the same for the same pairs.

@@ -5,8 +5,7 @@
 
 #include <chrono>
 #include <list>
-#include <new>
-#include <stdexcept>
+#include <thread>
 
 #include "cmap/core/error.hpp"
 #include "cmap/core/version.hpp"
@@ -16,6 +15,7 @@
 #include "cmap/report/html_report.hpp"
 #include "cmap/report/leaderboard.hpp"
 #include "cmap/report/report.hpp"
+#include "report/compare/child_process.hpp"
 #include "report/compare/pair_folder.hpp"
 
 namespace cmap {
@@ -32,7 +32,12 @@ class FolderLock {
     fs::create_directories(folder, error);
     descriptor_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (descriptor_ < 0) throw UsageError(fmt::format("{}: cannot be used as the output folder", folder.string()));
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+    // The last process of a run that was killed holds the lock a moment longer.
+    constexpr int kAttempts = 20;
+    for (int i = 0; i < kAttempts; ++i) {
+      if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
     ::close(descriptor_);
     throw UsageError(fmt::format("{}: another cmap_leaderboard is writing there", folder.string()));
   }
@@ -64,22 +69,13 @@ std::string command_for(const std::string& reference, const std::string& estimat
   return shell_command(words);
 }
 
-/// Why a pair has no report: its own failure, which stops no other.
-struct PairFailure : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
 /// Turns whatever goes wrong with a pair's maps into its failure.
 template <class Work>
 auto of_pair(Work&& work) {
   try {
     return work();
   } catch (const Error& error) {
-    throw PairFailure(error.what());
-  } catch (const std::bad_alloc&) {
-    throw PairFailure("not enough memory");
-  } catch (const std::exception& error) {
-    throw PairFailure(fmt::format("internal error: {}", error.what()));
+    throw WorkFailure(error.what());
   }
 }
 
@@ -99,11 +95,14 @@ class Runner {
   void say(const std::string& text) const { run_.log(place_ + text); }
   fs::path file(const std::string& path) const { return run_.data_root / path; }
   LeaderboardPair evaluate_pair(const LeaderboardSequence& sequence, const LeaderboardMethod& method);
-  /// Fills in report and state; PairFailure where that cannot be.
+  /// Fills in report and state; WorkFailure where that cannot be.
   void fill(LeaderboardPair& pair, const std::string& reference, const std::string& estimate);
   /// What a report depends on.
   Json key_for(const std::string& reference, const std::string& estimate);
   const std::string& hash_of_reference(const std::string& path);
+  /// Evaluates and stores, in a process of its own.
+  void evaluate_into(const PairFolder& folder, const Json& key, const std::string& reference,
+                     const std::string& estimate) const;
   Evaluated evaluate_files(const std::string& reference, const std::string& estimate) const;
   void store(const PairFolder& folder, const Json& key, const Evaluated& evaluated) const;
   /// Outputs do not depend on where the data lies.
@@ -170,26 +169,34 @@ void Runner::store(const PairFolder& folder, const Json& key, const Evaluated& e
   folder.store(key, files);
 }
 
+void Runner::evaluate_into(const PairFolder& folder, const Json& key, const std::string& reference,
+                           const std::string& estimate) const {
+  const auto start = std::chrono::steady_clock::now();
+  const Evaluated evaluated = of_pair([&] { return evaluate_files(reference, estimate); });
+  for (const char* which : {"reference", "estimate"}) {
+    if (evaluated.report.at("inputs").at(which).at("sha256") != key.at(which).at("sha256")) {
+      throw WorkFailure(fmt::format("the {} changed while it was read", which));
+    }
+  }
+  store(folder, key, evaluated);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  say(fmt::format("evaluated in {:.1f} s", seconds.count()));
+}
+
 void Runner::fill(LeaderboardPair& pair, const std::string& reference, const std::string& estimate) {
   const Json key = of_pair([&] { return key_for(reference, estimate); });
   const PairFolder folder(run_.output / pair.folder, files_);
   std::string why_not;
-  if (std::optional<Json> stored = folder.load(key, why_not)) {
-    pair.report = std::move(*stored);
-    return say("done before");
+  std::optional<Json> stored = folder.load(key, why_not);
+  if (stored) {
+    say("done before");
+  } else {
+    if (!why_not.empty()) say(fmt::format("what is stored is not used, it is {}", why_not));
+    run_apart([&] { evaluate_into(folder, key, reference, estimate); });
+    stored = folder.load(key, why_not);
+    if (!stored) throw WorkFailure(fmt::format("what was stored is {}", why_not));
   }
-  if (!why_not.empty()) say(fmt::format("what is stored is not used, it is {}", why_not));
-  const auto start = std::chrono::steady_clock::now();
-  Evaluated evaluated = of_pair([&] { return evaluate_files(reference, estimate); });
-  for (const char* which : {"reference", "estimate"}) {
-    if (evaluated.report.at("inputs").at(which).at("sha256") != key.at(which).at("sha256")) {
-      throw PairFailure(fmt::format("the {} changed while it was read", which));
-    }
-  }
-  store(folder, key, evaluated);
-  pair.report = std::move(evaluated.report);
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  say(fmt::format("evaluated in {:.1f} s", seconds.count()));
+  pair.report = std::move(*stored);
 }
 
 LeaderboardPair Runner::evaluate_pair(const LeaderboardSequence& sequence, const LeaderboardMethod& method) {
@@ -215,7 +222,7 @@ LeaderboardPair Runner::evaluate_pair(const LeaderboardSequence& sequence, const
     fill(pair, sequence.reference, map->second);
     pair.state = PairState::kDone;
     pair.has_figure = figures_.has_value();
-  } catch (const PairFailure& failure) {
+  } catch (const WorkFailure& failure) {
     pair.state = PairState::kFailed;
     pair.reason = without_root(failure.what());
   }
