@@ -90,10 +90,16 @@ TEST(Typeset, Latex) {
             "\\begin{tabular}{lrr}\n\\toprule\n"
             "  method & A & B\\_2 \\\\\n\\midrule\n"
             "  Ours \\& co & \\cellcolor{red!35}1.000 & $\\times$ \\\\\n"
-            "  x|y & \\cellcolor{orange!35}12.00 & -- \\\\\n"
+            "  x\\textbar{}y & \\cellcolor{orange!35}12.00 & -- \\\\\n"
             "\\bottomrule\n\\end{tabular}\n"
             "\\par\\smallskip{\\footnotesize a note}\n"
             "\\end{table}\n");
+}
+
+TEST(Typeset, LatexHasMinusSigns) {
+  ScoreTable table{"t", "", {"method"}, {"A"}, {}, {}};
+  table.rows.push_back({{"V-Long"}, {number(-1.5, "-1.500 (-5.0 %)")}});
+  EXPECT_THAT(typeset({table}, TableFormat::kLatex), HasSubstr("  V-Long & $-$1.500 ($-$5.0 \\%) \\\\\n"));
 }
 
 TEST(Typeset, NotesOfSeveralTablesStandOnceAtTheEnd) {
@@ -106,6 +112,7 @@ TEST(Escape, Latex) {
   EXPECT_EQ(escaped_latex("V-Sim(3)_a%b#c$d&e{f}g~h^i\\j<k>l"),
             "V-Sim(3)\\_a\\%b\\#c\\$d\\&e\\{f\\}g\\textasciitilde{}h\\textasciicircum{}i\\textbackslash{}j\\textless{}k"
             "\\textgreater{}l");
+  EXPECT_EQ(escaped_latex("[a]* \"b\"|"), "{[}a{]}{*} ''b''\\textbar{}") << "nothing that the row before would take";
   EXPECT_EQ(escaped_latex("unit RGB^2 ↓ <= 0.2 m"), "unit RGB$^2$ $\\downarrow$ $\\leq$ 0.2 m");
 }
 

@@ -62,6 +62,7 @@ std::string escaped_markdown(std::string_view text) {
 }
 
 std::string escaped_latex(std::string_view text) {
+  // A row that begins with [ or * would be an argument of the line break before it.
   return replaced(one_line(text), {{"\\", "\\textbackslash{}"},
                                    {"{", "\\{"},
                                    {"}", "\\}"},
@@ -76,11 +77,15 @@ std::string escaped_latex(std::string_view text) {
                                    {"<=", "$\\leq$"},
                                    {"<", "\\textless{}"},
                                    {">", "\\textgreater{}"},
-                                   {"\"", "\\textquotedbl{}"},
+                                   {"\"", "''"},
                                    {"↓", "$\\downarrow$"},
                                    {"↑", "$\\uparrow$"},
                                    {"Δ", "$\\Delta$"},
-                                   {"×", "$\\times$"}});
+                                   {"×", "$\\times$"},
+                                   {"[", "{[}"},
+                                   {"]", "{]}"},
+                                   {"*", "{*}"},
+                                   {"|", "\\textbar{}"}});
 }
 
 std::string escaped_html(std::string_view text) {

@@ -78,13 +78,20 @@ std::string markdown_table(const ScoreTable& table) {
   return text;
 }
 
+/// Numbers have minus signs, not hyphens.
+std::string latex_number(const std::string& text) {
+  std::string number;
+  for (char c : text) number += c == '-' ? "$-$" : std::string(1, c);
+  return number;
+}
+
 std::string latex_cell(const TableCell& cell) {
   if (cell.text == kNoValue) return "--";
   if (cell.text == kFailedMark) return "$\\times$";
   const char* color = cell.mark == Mark::kBest     ? "\\cellcolor{red!35}"
                       : cell.mark == Mark::kSecond ? "\\cellcolor{orange!35}"
                                                    : "";
-  return color + escaped_latex(cell.text);
+  return color + latex_number(escaped_latex(cell.text));
 }
 
 std::string latex_row(const std::vector<std::string>& cells) {
