@@ -16,7 +16,7 @@ namespace {
 using Color = Drawing::Color;
 using Anchor = Drawing::Anchor;
 
-constexpr Color kInk{27, 31, 36}, kMuted{110, 118, 129}, kGrid{226, 230, 234};
+constexpr Color kPaper{255, 255, 255}, kInk{27, 31, 36}, kMuted{110, 118, 129}, kGrid{226, 230, 234};
 /// Okabe and Ito's colors, which color-blind readers tell apart; the yellow left out, as it fades on white.
 constexpr Color kColors[]{{0, 114, 178},  {213, 94, 0},  {0, 158, 115}, {204, 121, 167},
                           {86, 180, 233}, {230, 159, 0}, {90, 90, 90}};
@@ -25,17 +25,22 @@ constexpr double kWidth = 1200.0, kMargin = 24.0, kGap = 32.0, kTitleSize = 15.0
 
 Color color_of_report(std::size_t i) { return kColors[i % std::size(kColors)]; }
 
-/// At most `n` characters.
+/// Reports after the last color take the first again, hollow.
+bool is_hollow(std::size_t report) { return report >= std::size(kColors); }
+
+/// At most `n` characters, beginning and end: names often differ in their ends.
 std::string shortened(const std::string& text, std::size_t n) {
-  if (character_count(text) <= n) return text;
-  std::string start;
+  const std::size_t length = character_count(text);
+  if (length <= n) return text;
+  const std::size_t n_start = (n - 1) / 2, n_end = n - 1 - n_start;
+  std::string start, end;
   std::size_t characters = 0;
   for (char c : text) {
     characters += (static_cast<unsigned char>(c) & 0xC0) != 0x80 ? 1 : 0;
-    if (characters == n) break;
-    start += c;
+    if (characters <= n_start) start += c;
+    if (characters > length - n_end) end += c;
   }
-  return start + "…";
+  return start + "…" + end;
 }
 
 struct Panel {
@@ -76,6 +81,13 @@ class Charts {
   void box(double x, double y, double width, double height, Color color) {
     drawing.shapes.emplace_back(Drawing::Box{x, y, width, height, color});
   }
+  /// A box in the color of a report.
+  void report_box(double x, double y, double width, double height, std::size_t report) {
+    constexpr double kRim = 1.6;
+    box(x, y, width, height, color_of_report(report));
+    if (!is_hollow(report) || width < 2.0 * kRim || height < 2.0 * kRim) return;
+    box(x + kRim, y + kRim, width - 2.0 * kRim, height - 2.0 * kRim, kPaper);
+  }
   void line(std::vector<std::array<double, 2>> points, Color color, double width) {
     drawing.shapes.emplace_back(Drawing::Line{std::move(points), color, width});
   }
@@ -105,7 +117,7 @@ double Charts::legend(double top) {
       x = kMargin;
       y += kRow;
     }
-    box(x, y - kSwatch / 2.0, kSwatch, kSwatch, color_of_report(i));
+    report_box(x, y - kSwatch / 2.0, kSwatch, kSwatch, i);
     text(x + kSwatch + 8.0, y, name, kTitleSize, kInk);
     x += width;
   }
@@ -128,7 +140,7 @@ void Charts::bars(const Panel& panel, const BarChart& chart) {
     text(left - 8.0, y, shortened(names_[i], 12), kTextSize, kMuted, Anchor::kRight);
     const double end = zero + chart.values[i].value_or(0.0) * scale;
     if (chart.values[i]) {
-      box(std::min(zero, end), y - 0.36 * kBarHeight, std::abs(end - zero), 0.72 * kBarHeight, color_of_report(i));
+      report_box(std::min(zero, end), y - 0.36 * kBarHeight, std::abs(end - zero), 0.72 * kBarHeight, i);
     }
     text(std::max(zero, end) + 6.0, y, chart.texts[i], kTextSize, kInk);
   }
@@ -152,7 +164,7 @@ void Charts::axes(const Panel& panel, double left, double x_end, double y_end, c
 }
 
 void Charts::curves(const Panel& panel, const CurveChart& chart) {
-  constexpr double kLabels = 56.0, kDot = 5.0;
+  constexpr double kLabels = 56.0, kDot = 6.0;
   text(panel.x, panel.y + kHeadHeight / 2.0, chart.title, kTitleSize, kInk);
   double highest = 0.0;
   for (const auto& values : chart.y) {
@@ -165,7 +177,7 @@ void Charts::curves(const Panel& panel, const CurveChart& chart) {
     std::vector<std::array<double, 2>> run;
     const auto finish = [&] {
       if (run.size() > 1) line(run, color_of_report(report), 2.0);
-      for (const auto& [x, y] : run) box(x - kDot / 2.0, y - kDot / 2.0, kDot, kDot, color_of_report(report));
+      for (const auto& [x, y] : run) report_box(x - kDot / 2.0, y - kDot / 2.0, kDot, kDot, report);
       run.clear();
     };
     for (std::size_t i = 0; i < chart.x.size(); ++i) {
