@@ -72,7 +72,7 @@ std::vector<CurveChart> curve_charts(const std::vector<SavedReport>& reports, co
   for (auto first = comparison.kinds.begin(); first != comparison.kinds.end();) {
     const auto last = std::find_if(first, comparison.kinds.end(),
                                    [&](const ScoreKind& kind) { return kind.metric != first->metric; });
-    const bool has_thresholds = !first->at.empty() && first->at.find('-') == std::string::npos;
+    const bool has_thresholds = !first->at.empty() && first->metric != "color_distance_by_range";
     if (has_thresholds) charts.push_back(threshold_curve(comparison, {first, last}));
     if (first->metric == "local_color_recall") {
       if (auto recall = recall_curve(reports)) charts.push_back(std::move(*recall));
