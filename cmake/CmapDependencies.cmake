@@ -37,8 +37,11 @@ if(CMAP_BUILD_BENCHMARKS)
   find_package(PCL QUIET COMPONENTS kdtree io)
 endif()
 
-# Figures: optional.
-find_package(VTK 9.1 QUIET COMPONENTS CommonDataModel IOImage RenderingCore RenderingFreeType)
+# Figures: optional. VTK's OpenGL and windows are for module gl alone.
+find_package(VTK 9.1 QUIET COMPONENTS CommonDataModel IOImage RenderingCore RenderingFreeType
+  OPTIONAL_COMPONENTS InteractionStyle RenderingOpenGL2 RenderingUI glew)
+find_package(OpenGL QUIET COMPONENTS EGL GLX)
+find_package(X11 QUIET)
 find_path(CMAP_OPENCV_INCLUDE_DIR opencv2/imgproc.hpp PATH_SUFFIXES opencv4)
 find_library(CMAP_OPENCV_CORE_LIBRARY opencv_core)
 find_library(CMAP_OPENCV_IMGPROC_LIBRARY opencv_imgproc)
@@ -47,11 +50,31 @@ if(VTK_FOUND AND CMAP_OPENCV_INCLUDE_DIR AND CMAP_OPENCV_CORE_LIBRARY AND CMAP_O
 else()
   set(CMAP_WITH_RENDER OFF)
 endif()
+if(CMAP_WITH_RENDER AND TARGET VTK::RenderingOpenGL2 AND TARGET VTK::RenderingUI AND TARGET VTK::InteractionStyle AND TARGET VTK::glew
+   AND TARGET OpenGL::EGL AND TARGET OpenGL::GLX AND TARGET X11::X11)
+  set(CMAP_WITH_GL ON)
+else()
+  set(CMAP_WITH_GL OFF)
+endif()
+
+# Global registration: optional. PCL's own CMake files would bring in VTK and all its other modules.
+find_path(CMAP_PCL_INCLUDE_DIR pcl/features/fpfh_omp.h PATH_SUFFIXES pcl-1.15 pcl-1.14 pcl-1.13 pcl-1.12)
+set(CMAP_PCL_LIBRARIES)
+set(CMAP_WITH_PCL ON)
+foreach(module features search kdtree octree common)
+  find_library(CMAP_PCL_${module}_LIBRARY pcl_${module})
+  list(APPEND CMAP_PCL_LIBRARIES ${CMAP_PCL_${module}_LIBRARY})
+  if(NOT CMAP_PCL_INCLUDE_DIR OR NOT CMAP_PCL_${module}_LIBRARY)
+    set(CMAP_WITH_PCL OFF)
+  endif()
+endforeach()
 
 function(cmap_print_summary)
   message(STATUS "cmap ${PROJECT_VERSION}, ${CMAKE_BUILD_TYPE}")
   message(STATUS "  feature      state  to change it")
   message(STATUS "  figures      ${CMAP_WITH_RENDER}     apt-get install libvtk9-dev libopencv-imgproc-dev fonts-dejavu-core")
+  message(STATUS "  OpenGL       ${CMAP_WITH_GL}     apt-get install libvtk9-dev libegl-dev libgl-dev libx11-dev")
+  message(STATUS "  global align ${CMAP_WITH_PCL}     apt-get install libpcl-dev")
   message(STATUS "  tests        ${CMAP_BUILD_TESTS}     -DCMAP_BUILD_TESTS=ON|OFF (libgtest-dev libgmock-dev)")
   message(STATUS "  benchmarks   ${CMAP_BUILD_BENCHMARKS}    -DCMAP_BUILD_BENCHMARKS=ON|OFF (libbenchmark-dev; peers: libnanoflann-dev libpcl-dev libopen3d-dev)")
   message(STATUS "  fuzzers      ${CMAP_BUILD_FUZZERS}    -DCMAP_BUILD_FUZZERS=ON|OFF (clang)")

@@ -35,7 +35,7 @@ constexpr const char* kExample =
     "(booktabs,\n"
     "xcolor), html (one file, sortable, offline).\n"
     "Exit codes: 0 done; 2 wrong usage, no reports, or reports that do not compare; 3 a report is missing or damaged;\n"
-    "4 pictures other than .svg are not built; 70 internal error.";
+    "70 internal error.";
 
 struct Arguments {
   std::vector<std::string> reports;

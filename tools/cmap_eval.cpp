@@ -14,6 +14,7 @@
 #include "cmap/core/simd.hpp"
 #include "cmap/eval/point_errors.hpp"
 #include "cmap/eval/requirement.hpp"
+#include "cmap/eval/sensitivity.hpp"
 #include "cmap/io/output_file.hpp"
 #include "cmap/report/figure_module.hpp"
 #include "cmap/report/html_report.hpp"
@@ -168,9 +169,19 @@ ExitCode run(const Arguments& arguments, const std::string& command) {
   run.stage_seconds.emplace_back("read", seconds());
   const cmap::InputDescription reference_description = describe(reference);
   const cmap::InputDescription estimate_description = describe(estimate);
-  const cmap::Evaluation evaluation =
-      cmap::evaluate(std::move(reference.cloud), std::move(estimate.cloud), options, T_ref_est,
-                     [&](std::string_view stage, double done) { progress.update(stage, done); });
+  const cmap::ProgressSink show = [&](std::string_view stage, double done) { progress.update(stage, done); };
+  std::optional<cmap::SensitivityBand> band;
+  if (options.sensitivity) {
+    const double before = seconds();
+    band = cmap::sensitivity_band(reference.cloud, estimate.cloud, options, T_ref_est, show);
+    run.stage_seconds.emplace_back("sensitivity", seconds() - before);
+  }
+  cmap::Evaluation evaluation =
+      cmap::evaluate(std::move(reference.cloud), std::move(estimate.cloud), options, T_ref_est, show);
+  if (band) {
+    band->include(evaluation);
+    evaluation.sensitivity = band->json(options);
+  }
 
   run.stage_seconds.insert(run.stage_seconds.end(), evaluation.stage_seconds.begin(), evaluation.stage_seconds.end());
   run.wall_s = seconds();

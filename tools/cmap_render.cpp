@@ -9,6 +9,8 @@
 #include "cmap/core/parallel.hpp"
 #include "cmap/core/progress.hpp"
 #include "cmap/render/figure.hpp"
+#include "cmap/render/gl_module.hpp"
+#include "cmap/render/point_text.hpp"
 #include "cmap/render/standard_figure.hpp"
 #include "cmap/render/turntable.hpp"
 #include "evaluation_arguments.hpp"
@@ -19,9 +21,8 @@ namespace {
 
 constexpr const char* kDescription =
     "Draws a point-cloud map, or an estimated map beside its reference with what is wrong with it.\n"
-    "Needs no display and no GPU. Layers: reference, estimate, lcr, color-distance, distance, delta-e, ccs, "
-    "wasserstein, density,\n"
-    "height.";
+    "Needs no display and no GPU; --interactive opens a window in which h shows the keys.\n"
+    "Layers: reference, estimate, lcr, color-distance, distance, delta-e, ccs, wasserstein, density, height.";
 
 constexpr const char* kExample =
     "Example:\n"
@@ -32,12 +33,12 @@ constexpr const char* kExample =
 
 struct Arguments {
   std::string map, estimate, output, turntable, transform;
-  std::string camera = "oblique", size = "1600x1000", background = "white", color_map;
+  std::string camera = "oblique", size = "1600x1000", background = "white", color_map, renderer = "splat";
   std::vector<std::string> panels;
   std::vector<double> range;
   double point_size = 1.0;
   int frames = 120;
-  bool orthographic = false, logarithmic = false;
+  bool orthographic = false, logarithmic = false, interactive = false;
   cmap::EvaluationArguments evaluation;
   cmap::CommonArguments common;
 };
@@ -46,6 +47,7 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("MAP", a.map, "map to draw; with EST, the reference")->required()->type_name("FILE");
   app.add_option("EST", a.estimate, "estimated map")->type_name("FILE");
   app.add_option("-o,--output", a.output, "picture to write: .png, .jpg or .tif")->type_name("FILE");
+  app.add_flag("--interactive", a.interactive, "a window to turn, zoom and pick points in; needs an X display");
   app.add_option("--panels", a.panels, "layers side by side [reference,estimate,lcr,color-distance]")
       ->type_name("LIST")
       ->delimiter(',')
@@ -64,6 +66,8 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("--point-size", a.point_size, "factor on the size of points [1]")
       ->type_name("FACTOR")
       ->check(CLI::Range(0.01, 100.0).description(""));
+  app.add_option("--renderer", a.renderer, "splat, on the processor, or gl, by OpenGL: the same picture [splat]")
+      ->type_name("NAME");
   app.add_option("--transform", a.transform, "4x4 matrix T_ref_est that moves the estimate into the reference frame")
       ->type_name("FILE");
   app.add_option("--turntable", a.turntable, "full turn around the map: .mp4, .gif, or a new folder of frames")
@@ -71,8 +75,8 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("--frames", a.frames, "of the turn, 24 a second [120]")
       ->type_name("N")
       ->check(CLI::Range(2, 10000).description(""));
-  cmap::add_common_options(app, a.common, "no progress");
-  cmap::refuse_empty(app, {"--output", "--turntable", "--camera", "--color-map", "--transform"});
+  cmap::add_common_options(app, a.common, "no progress, and not which device OpenGL draws by");
+  cmap::refuse_empty(app, {"--output", "--turntable", "--camera", "--color-map", "--renderer", "--transform"});
   a.evaluation.add_to(app, [](std::string_view name) {
     return name.starts_with("lcr-") ? name != "lcr-curve" : name.starts_with("ccs-") || name.starts_with("awd-");
   });
@@ -87,6 +91,13 @@ cmap::FigureOptions figure_options(const Arguments& a) {
   }
   options.background = cmap::background_from_name(a.background);
   options.point_size = a.point_size;
+  if (a.renderer == "gl") {
+    std::string device;
+    options.splatter = cmap::GlModule().open_splatter(device);
+    if (!a.common.quiet) fmt::print(stderr, "cmap_render: draws by {}\n", device);
+  } else if (a.renderer != "splat") {
+    throw cmap::UsageError(fmt::format("--renderer: \"{}\" is none of splat, gl", a.renderer));
+  }
   return options;
 }
 
@@ -110,14 +121,22 @@ CameraChoice camera_choice(const Arguments& a) {
   return cmap::view_from_name(a.camera);
 }
 
+/// A picture, a turn or both; or a window.
+void check_outputs(const Arguments& a) {
+  const bool has_output = !a.output.empty() || !a.turntable.empty();
+  if (!has_output && !a.interactive) throw cmap::UsageError("--output is required, or --turntable, or --interactive");
+  if (has_output && a.interactive) throw cmap::UsageError("--interactive writes no file: its key s saves pictures");
+  if (a.interactive) cmap::GlModule().require_display();
+  if (!a.output.empty()) cmap::check_image_name(a.output);
+  if (!a.output.empty()) cmap::require_writable(a.output);
+  if (!a.turntable.empty()) cmap::check_turntable_name(a.turntable);
+}
+
 /// What is drawn and how, checked before the work.
 struct Plan {
   explicit Plan(const Arguments& a) : options(figure_options(a)), layer(layer_options(a)), camera(camera_choice(a)) {
     cmap::refuse_overwriting({a.map, a.estimate, a.camera, a.transform}, {a.output, a.turntable});
-    if (a.output.empty() && a.turntable.empty()) throw cmap::UsageError("--output is required, or --turntable");
-    if (!a.output.empty()) cmap::check_image_name(a.output);
-    if (!a.output.empty()) cmap::require_writable(a.output);
-    if (!a.turntable.empty()) cmap::check_turntable_name(a.turntable);
+    check_outputs(a);
     a.evaluation.apply_to(evaluation);
     for (const std::string& panel : a.panels) cmap::check_layer_name(panel);
     (void)cmap::panel_aspect(std::max<std::size_t>(1, a.panels.size()), options);
@@ -128,27 +147,46 @@ struct Plan {
   cmap::EvaluationOptions evaluation;
 };
 
-cmap::Camera camera_of(const Plan& plan, const std::function<cmap::Camera(cmap::View)>& fitted) {
+/// What there is to see.
+struct Scene {
+  std::string title;
+  std::vector<cmap::Layer> layers;
+  const cmap::PointBlocks& points;  ///< that the camera is fitted to
+  std::function<std::vector<std::string>(const cmap::PointBlocks& points, std::size_t slot)> describe_point;
+};
+
+using FittedCamera = cmap::Camera (*)(cmap::View, const cmap::PointBlocks&, double aspect, bool orthographic);
+
+/// The camera that was asked for.
+cmap::Camera camera_of(const Arguments& a, const Scene& scene, const Plan& plan, std::size_t n_panels,
+                       FittedCamera fitted) {
   if (const auto* camera = std::get_if<cmap::Camera>(&plan.camera)) return *camera;
-  return fitted(std::get<cmap::View>(plan.camera));
+  return fitted(std::get<cmap::View>(plan.camera), scene.points, cmap::panel_aspect(n_panels, plan.options),
+                a.orthographic);
 }
 
-void draw(const Arguments& a, std::span<const cmap::Layer> layers, const cmap::PointBlocks& points, const Plan& plan,
-          cmap::ProgressBar& progress) {
-  const double aspect = cmap::panel_aspect(layers.size(), plan.options);
-  if (!a.output.empty()) {
-    const cmap::Camera camera =
-        camera_of(plan, [&](cmap::View view) { return cmap::camera_for(view, points, aspect, a.orthographic); });
-    cmap::OutputFile file(a.output);
-    cmap::write_image(cmap::draw_figure(layers, camera, plan.options), a.output, file);
-    file.commit();
-  }
-  if (!a.turntable.empty()) {
-    const cmap::Camera camera = camera_of(
-        plan, [&](cmap::View view) { return cmap::turntable_camera_for(view, points, aspect, a.orthographic); });
-    cmap::write_turntable(layers, cmap::turntable_cameras(camera, a.frames), plan.options, a.turntable,
-                          [&](std::string_view stage, double done) { progress.update(stage, done); });
-  }
+void show_window(const Arguments& a, const Scene& scene, const Plan& plan) {
+  const cmap::Camera camera = camera_of(a, scene, plan, 1, &cmap::camera_for);
+  cmap::GlModule().view({scene.title, scene.layers, camera, plan.options, scene.describe_point});
+}
+
+void write_figure(const Arguments& a, const Scene& scene, const Plan& plan) {
+  const cmap::Camera camera = camera_of(a, scene, plan, scene.layers.size(), &cmap::camera_for);
+  cmap::OutputFile file(a.output);
+  cmap::write_image(cmap::draw_figure(scene.layers, camera, plan.options), a.output, file);
+  file.commit();
+}
+
+void write_turn(const Arguments& a, const Scene& scene, const Plan& plan, cmap::ProgressBar& progress) {
+  const cmap::Camera camera = camera_of(a, scene, plan, scene.layers.size(), &cmap::turntable_camera_for);
+  cmap::write_turntable(scene.layers, cmap::turntable_cameras(camera, a.frames), plan.options, a.turntable,
+                        [&](std::string_view stage, double done) { progress.update(stage, done); });
+}
+
+void draw(const Arguments& a, const Scene& scene, const Plan& plan, cmap::ProgressBar& progress) {
+  if (a.interactive) return show_window(a, scene, plan);
+  if (!a.output.empty()) write_figure(a, scene, plan);
+  if (!a.turntable.empty()) write_turn(a, scene, plan, progress);
 }
 
 void draw_map(const Arguments& a, const Plan& plan, cmap::ProgressBar& progress) {
@@ -156,7 +194,8 @@ void draw_map(const Arguments& a, const Plan& plan, cmap::ProgressBar& progress)
   progress.update("read", 0.0);
   const cmap::IndexedMap map(cmap::read_point_cloud(a.map).cloud);
   const std::vector<cmap::Layer> layers{cmap::make_layer(map, a.map, plan.layer)};
-  draw(a, layers, map.index.points, plan, progress);
+  const auto describe = [&](const cmap::PointBlocks&, std::size_t slot) { return cmap::describe_point(map, slot); };
+  draw(a, {a.map, layers, map.index.points, describe}, plan, progress);
 }
 
 /// What the panels and their captions need of an evaluation; color only where both maps have it.
@@ -182,7 +221,11 @@ void draw_pair(const Arguments& a, const Plan& plan, cmap::ProgressBar& progress
   std::vector<cmap::Layer> layers;
   for (const std::string& panel : a.panels.empty() ? cmap::standard_panels(evaluation) : a.panels)
     layers.push_back(cmap::make_layer(evaluation, panel, plan.layer));
-  draw(a, layers, evaluation.pair.reference.index.points, plan, progress);
+  const auto describe = [&](const cmap::PointBlocks& points, std::size_t slot) {
+    return cmap::describe_point(evaluation, points, slot);
+  };
+  const std::string title = fmt::format("{}, {}", a.map, a.estimate);
+  draw(a, {title, layers, evaluation.pair.reference.index.points, describe}, plan, progress);
 }
 
 cmap::ExitCode run(const Arguments& a) {

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian and Ubuntu packages that cmap is built from, as far as they are missing.
 # Usage: tools/install_dependencies.sh [--tests] [--benchmarks]
-#   --tests        also what the tests need: GoogleTest, Python, ffmpeg, node and npm, a browser
+#   --tests        also what the tests need: GoogleTest, Python, ffmpeg, node and npm, a browser, OpenGL in software
 #   --benchmarks   also what the speed benchmarks need: Google Benchmark and the libraries compared with
 set -euo pipefail
 tools=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -11,15 +11,17 @@ packages=(
   libeigen3-dev libfmt-dev libtbb-dev libssl-dev nlohmann-json3-dev libcli11-dev
   zlib1g-dev liblzf-dev liblz4-dev libflann-dev
   libvtk9-dev libopencv-imgproc-dev fonts-dejavu-core
+  libegl-dev libgl-dev libx11-dev libpcl-dev
 )
 for argument in "$@"; do
   case "$argument" in
     --tests)
-      packages+=(libgtest-dev libgmock-dev python3 python3-numpy python3-scipy python3-jsonschema ffmpeg chromium)
+      packages+=(libgtest-dev libgmock-dev python3 python3-numpy python3-scipy python3-jsonschema ffmpeg chromium
+        libgl1-mesa-dri libegl-mesa0 xvfb xdotool)
       # Node's own packages bring npm with them and exclude Debian's.
       command -v npm >/dev/null || packages+=(nodejs npm)
       ;;
-    --benchmarks) packages+=(libbenchmark-dev libnanoflann-dev libpcl-dev) ;;
+    --benchmarks) packages+=(libbenchmark-dev libnanoflann-dev) ;;
     -h | --help) sed -n '2,/^set /{/^#/s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"; exit 0 ;;
     *) echo "install_dependencies.sh: unknown argument '$argument'; see --help" >&2; exit 2 ;;
   esac

@@ -5,6 +5,7 @@
 
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
+#include "eval/fairness_records.hpp"
 #include "eval/metric_records.hpp"
 #include "eval/peer_records.hpp"
 #include "eval/preparation.hpp"
@@ -93,7 +94,7 @@ Evaluation evaluate(PointCloud reference, PointCloud estimate, const EvaluationO
   check_color(reference, estimate, selection, warnings);
   clock.run("prepare", 0.15, [&] { prepare_clouds(reference, estimate, options, selection, T_ref_est, warnings); });
   Evaluation result{
-      options, T_ref_est, 0.0, 0.0, {}, {}, {}, {}, index_and_pair(reference, estimate, options.index, clock), {}};
+      .options = options, .T_ref_est = T_ref_est, .pair = index_and_pair(reference, estimate, options.index, clock)};
 
   Findings findings{options, selection, result.pair, {}, {}, {}, {}};
   clock.run("geometry", 0.7, [&] {
@@ -122,6 +123,11 @@ Evaluation evaluate(PointCloud reference, PointCloud estimate, const EvaluationO
                                              neighborhood_shapes(result.pair.estimate.index, options.mme_radius_m)};
     }
     append(result.metrics, entropy_records(findings, warnings));
+  });
+  clock.run("intervals", 0.93, [&] {
+    const LocalColorRecall* recall = result.recall ? &*result.recall : nullptr;
+    result.intervals = interval_records(findings, recall, warnings);
+    result.unobserved = unobserved_records(findings, recall);
   });
   clock.run("other tools", 0.95, [&] { result.aliases = peer_records(findings, warnings); });
 

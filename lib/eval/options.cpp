@@ -96,6 +96,12 @@ IndexKind index_kind(const char* name, const Json& value) {
   refuse(name, value, "is neither bvh nor flann");
 }
 
+Observed observed_kind(const char* name, const Json& value) {
+  if (value == "none") return Observed::kNone;
+  if (value == "auto") return Observed::kAuto;
+  refuse(name, value, "is neither none nor auto");
+}
+
 bool flag(const char* name, const Json& value) {
   if (!value.is_boolean()) refuse(name, value, "is neither true nor false");
   return value.get<bool>();
@@ -221,6 +227,18 @@ const std::vector<OptionSpec>& evaluation_option_specs() {
                   value.is_null() ? std::nullopt : std::optional(crop_box(n, value)), crop_json(o)),
       CMAP_OPTION("as", kWords, "TOOLS", "also what mapeval, open3d, mpeg or cloudcompare would print", as,
                   tools(n, value), o.as),
+      CMAP_OPTION("bootstrap", kCount, "N", "confidence intervals of 95 % from N replicates of blocks of the map",
+                  bootstrap, count(n, value, 0, 1'000'000), o.bootstrap),
+      CMAP_OPTION("block", kNumber, "METERS", "edge of those blocks", block_m, positive(n, value), o.block_m),
+      CMAP_OPTION("observed", kWord, "none|auto",
+                  "auto: also the metrics without what the other map could not have seen (no point within 1 m columns)",
+                  observed, observed_kind(n, value), o.observed == Observed::kAuto ? "auto" : "none"),
+      CMAP_OPTION("sensitivity", kFlag, "", "how far every metric goes when the alignment is a little off", sensitivity,
+                  flag(n, value), o.sensitivity),
+      CMAP_OPTION("sensitivity-translation", kNumber, "METERS", "that little, along every axis",
+                  sensitivity_translation_m, positive(n, value), o.sensitivity_translation_m),
+      CMAP_OPTION("sensitivity-rotation", kNumber, "DEGREES", "and about every axis", sensitivity_rotation_deg,
+                  positive(n, value), o.sensitivity_rotation_deg),
       CMAP_OPTION("index", kWord, "bvh|flann", "nearest-neighbor index", index, index_kind(n, value),
                   o.index == IndexKind::kFlann ? "flann" : "bvh"),
   };

@@ -33,15 +33,19 @@ double local_variation(std::span<const VoxelDistance> voxels, std::size_t center
 
 }  // namespace
 
-SpatialConsistency spatial_consistency(std::span<const VoxelDistance> voxels, int radius_voxels) {
+std::vector<double> local_variations(std::span<const VoxelDistance> voxels, int radius_voxels) {
   constexpr std::size_t kVoxelChunk = 64;
   std::vector<double> variations(voxels.size());
   parallel_chunks(voxels.size(), kVoxelChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) variations[i] = local_variation(voxels, i, radius_voxels);
   });
+  return variations;
+}
+
+SpatialConsistency spatial_consistency(std::span<const VoxelDistance> voxels, int radius_voxels) {
   SpatialConsistency consistency;
   double sum = 0.0;
-  for (double variation : variations) {
+  for (double variation : local_variations(voxels, radius_voxels)) {
     if (std::isnan(variation)) continue;
     sum += variation;
     ++consistency.n_voxels;

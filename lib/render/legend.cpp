@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 namespace cmap {
 namespace {
@@ -70,10 +71,19 @@ void draw_scale_bar(Image& image, const Rect& place, double meters_per_px, const
   const double length = round_down(0.22 * place.width * meters_per_px);
   const int width = static_cast<int>(std::lround(length / meters_per_px));
   const int y = place.y + place.height - pen.px(8), line = pen.px(2);
-  fill(image, place.x, y, width, line, pen.ink);
-  fill(image, place.x, y - pen.px(4), line, pen.px(10), pen.ink);
-  fill(image, place.x + width - line, y - pen.px(4), line, pen.px(10), pen.ink);
-  draw_text(image, place.x, y - pen.px(14), length_label(length), pen.small_text_px(), pen.ink);
+  const auto draw = [&](int dx, int dy, Rgba8 color) {
+    const int left = place.x + dx, top = y + dy;
+    fill(image, left, top, width, line, color);
+    fill(image, left, top - pen.px(4), line, pen.px(10), color);
+    fill(image, left + width - line, top - pen.px(4), line, pen.px(10), color);
+    draw_text(image, left, top - pen.px(14), length_label(length), pen.small_text_px(), color);
+  };
+  // An outline, where the map lies below.
+  const auto paper = static_cast<std::uint8_t>(pen.ink[0] < 128 ? 255 : 0);
+  for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
+    draw(dx * pen.px(1), dy * pen.px(1), {paper, paper, paper, 255});
+  }
+  draw(0, 0, pen.ink);
 }
 
 }  // namespace cmap

@@ -64,10 +64,8 @@ Json definitions(const Evaluation& evaluation) {
   Json list = Json::array();
   for (const MetricRecord& record : evaluation.metrics) {
     const MetricInfo& metric = *record.info;
-    list.push_back({{"id", metric.id},
-                    {"title", metric.title},
-                    {"group", metric.group},
-                    {"definition", metric.definition}});
+    list.push_back(
+        {{"id", metric.id}, {"title", metric.title}, {"group", metric.group}, {"definition", metric.definition}});
   }
   return list;
 }

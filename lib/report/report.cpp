@@ -119,6 +119,9 @@ Json make_report(const InputDescription& reference, const InputDescription& esti
   report["metrics"] = Json::object();
   for (const MetricRecord& record : evaluation.metrics) report["metrics"][record.info->id] = metric_json(record);
   if (!evaluation.aliases.is_null()) report["aliases"] = evaluation.aliases;
+  if (!evaluation.sensitivity.is_null()) report["sensitivity"] = evaluation.sensitivity;
+  if (!evaluation.intervals.is_null()) report["intervals"] = evaluation.intervals;
+  if (!evaluation.unobserved.is_null()) report["unobserved"] = evaluation.unobserved;
   report["warnings"] = Json::array();
   add_input_warnings(report["warnings"], "reference", reference);
   add_input_warnings(report["warnings"], "estimate", estimate);

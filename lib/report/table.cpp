@@ -1,12 +1,15 @@
 #include <fmt/format.h>
 
 #include "cmap/report/report.hpp"
-#include "report/score_text.hpp"
+#include "report/fairness_table.hpp"
+#include "report/table_text.hpp"
 
 namespace cmap {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+std::string percent(const Json& value) { return value.is_number() ? hundredths(value) + " %" : digits(value); }
 
 std::string_view arrow(const Json& metric) {
   const Json& better = metric.at("better");
@@ -58,27 +61,23 @@ std::string threshold_label(const Json& entry) {
   return fmt::format("{:>10}", fmt::format("<= {}", meters(entry.at("threshold_m"))));
 }
 
-std::string unit_of(const MetricInfo& info) { return info.unit == "1" ? "" : std::string(info.unit); }
-
 std::string value_rows(const MetricInfo& info, const Json& metric) {
-  const bool share = is_share(info.id);
-  const auto shown = [&](const Json& value) { return share ? hundredths(value) : digits(value); };
-  const std::string unit = share ? "%" : unit_of(info);
+  const std::string unit = shown_unit(info);
   if (metric.contains("per_threshold")) {
     std::string values;
     for (const Json& entry : metric.at("per_threshold"))
-      values += fmt::format(" {:>{}}", shown(entry.at("value")), threshold_label(entry).size());
+      values += fmt::format(" {:>{}}", shown(info, entry.at("value")), threshold_label(entry).size());
     return row(info.title, metric, values, unit, "");
   }
   if (metric.contains("per_range")) {
     std::string rows;
     for (const Json& bin : metric.at("per_range")) {
       rows += row(fmt::format("CD at {} to {} m", bin.at("lo_m").get<double>(), bin.at("hi_m").get<double>()), metric,
-                  digits(bin.at("value")), unit_of(info), "");
+                  digits(bin.at("value")), unit, "");
     }
     return rows;
   }
-  return row(info.title, metric, shown(metric.at("value")), unit, remark(info, metric));
+  return row(info.title, metric, shown(info, metric.at("value")), unit, remark(info, metric));
 }
 
 /// The thresholds above the columns of the metrics that have one value for each.
@@ -141,6 +140,7 @@ std::string format_table(const Json& report) {
     for (const auto& [tool, record] : report.at("aliases").items())
       table += fmt::format("\nas {}\n{}", tool, alias_lines("", record));
   }
+  table += sensitivity_lines(report) + interval_lines(report) + unobserved_lines(report);
   const Json& warnings = report.at("warnings");
   if (!warnings.empty()) table += "\nwarnings\n";
   for (const Json& warning : warnings) {

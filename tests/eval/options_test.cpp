@@ -50,6 +50,12 @@ const Setting kSettings[] = {
     {"voxel", "0.05", "0.05"},
     {"crop", "-1,-2,-3,1,2,3", "[-1.0, -2.0, -3.0, 1.0, 2.0, 3.0]"},
     {"as", "open3d,mpeg", R"(["open3d", "mpeg"])"},
+    {"bootstrap", "200", "200"},
+    {"block", "2.5", "2.5"},
+    {"observed", "auto", R"("auto")"},
+    {"sensitivity", "true", "true"},
+    {"sensitivity-translation", "0.05", "0.05"},
+    {"sensitivity-rotation", "0.5", "0.5"},
     {"index", "flann", R"("flann")"},
 };
 
@@ -82,7 +88,8 @@ TEST(Options, DefaultsAreThoseOfTheDefinitions) {
     "thresholds": [0.2, 0.1, 0.08, 0.05, 0.01], "overlap-distance": 1.0, "lcr-tau": 0.1, "lcr-radius": 0.5,
     "lcr-curve": false, "ccs-voxel": 0.2, "ccs-min-points": 2, "awd-voxel": 3.0, "awd-min-points": 100,
     "scs-radius": 5, "mme-radius": 0.1, "mme-min-neighbors": 10, "color-max-distance": null, "voxel": null,
-    "crop": null, "as": [], "index": "bvh"})");
+    "crop": null, "as": [], "bootstrap": 0, "block": 10.0, "observed": "none",
+    "sensitivity": false, "sensitivity-translation": 0.01, "sensitivity-rotation": 0.1, "index": "bvh"})");
   for (const auto& [name, value] : expected.items()) EXPECT_EQ(defaults.at(name), value) << name;
   EXPECT_EQ(defaults.size(), expected.size() + 1) << "the metrics are the one more";
 }

@@ -14,16 +14,7 @@ using ::testing::StartsWith;
 /// A record as evaluations make them.
 Evaluation evaluation() {
   using Json = nlohmann::ordered_json;
-  Evaluation result{{},
-                    Eigen::Matrix4d::Identity(),
-                    0.0,
-                    0.0,
-                    {},
-                    {},
-                    {},
-                    {},
-                    {IndexedMap(test::gray_map({{0, 0, 0}})), IndexedMap(test::gray_map({{0, 0, 0}})), {}, {}},
-                    {}};
+  Evaluation result{.pair = {IndexedMap(test::gray_map({{0, 0, 0}})), IndexedMap(test::gray_map({{0, 0, 0}})), {}, {}}};
   const auto add = [&](const char* id, const char* fields) {
     result.metrics.push_back({find_metric(id), Json::parse(fields)});
   };

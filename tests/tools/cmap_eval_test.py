@@ -46,6 +46,21 @@ class Results(CmapEval):
         else:
             self.assertEqual(found, expected, place)
 
+    def test_fairness_beside_the_plain_numbers(self):
+        metrics = ("--metrics", "default,mme", "--mme-radius", "0.5")
+        arguments = ("--bootstrap", "50", "--block", "4", "--observed", "auto", "--sensitivity", *metrics)
+        report = self.evaluate(TOWN / "reference.ply", TOWN / "estimate.ply", *arguments)
+        plain = self.evaluate(TOWN / "reference.ply", TOWN / "estimate.ply", *metrics)
+        self.assertEqual(report["metrics"], plain["metrics"], "never in place of the plain numbers")
+        ids = set(plain["metrics"])
+        self.assertEqual(set(report["sensitivity"]["metrics"]), ids)
+        self.assertEqual(set(report["intervals"]["metrics"]), ids - {"hausdorff"})
+        self.assertEqual(set(report["unobserved"]["metrics"]), ids - {"hausdorff"})
+        self.assertFalse({"sensitivity", "intervals", "unobserved"} & set(plain))
+        table = self.run_program(TOWN / "reference.ply", TOWN / "estimate.ply", *arguments).stdout.decode()
+        for heading in ("when the estimate is off by 0.01 m", "95 % intervals, 50 replicates of", "could not have seen"):
+            self.assertIn(heading, table)
+
     def test_golden_values(self):
         for folder in (TOWN, MICRO / "two_points"):
             with self.subTest(folder.name):

@@ -30,16 +30,19 @@ struct Warning {
 
 /// What the evaluation of one pair found.
 struct Evaluation {
-  EvaluationOptions options;
+  EvaluationOptions options = {};
   Eigen::Matrix4d T_ref_est = Eigen::Matrix4d::Identity();
   double overlap = 0.0;  ///< share of estimated points within the overlap distance
   double rmse_m = 0.0;
-  std::vector<MetricRecord> metrics;  ///< in the catalog's order
-  nlohmann::ordered_json aliases;     ///< by tool; null unless asked for
-  std::vector<Warning> warnings;
-  std::vector<std::pair<std::string, double>> stage_seconds;
-  MapPair pair;                            ///< both maps after transform, crop and thinning, with their neighbors
-  std::optional<LocalColorRecall> recall;  ///< where local_color_recall was computed
+  std::vector<MetricRecord> metrics = {};   ///< in the catalog's order
+  nlohmann::ordered_json aliases = {};      ///< by tool; null unless asked for
+  nlohmann::ordered_json intervals = {};    ///< null unless asked for
+  nlohmann::ordered_json unobserved = {};   ///< null unless asked for
+  nlohmann::ordered_json sensitivity = {};  ///< of a SensitivityBand, by who made it; null unless asked for
+  std::vector<Warning> warnings = {};
+  std::vector<std::pair<std::string, double>> stage_seconds = {};
+  MapPair pair;                                 ///< both maps after transform, crop and thinning, with their neighbors
+  std::optional<LocalColorRecall> recall = {};  ///< where local_color_recall was computed
 
   const MetricRecord* find(std::string_view id) const;
 };

@@ -12,6 +12,10 @@
 
 namespace cmap {
 
+/// How it is told what of one map the other could have seen, so that the rest can be left out beside the plain numbers:
+/// not at all, or from where the maps have points.
+enum class Observed { kNone, kAuto };
+
 /// Everything that can change a number of an evaluation. The defaults are those of METRICS: the paper's where it gives
 /// any. Command line, configuration files and reports name the fields as evaluation_option_specs() does.
 struct EvaluationOptions {
@@ -32,6 +36,12 @@ struct EvaluationOptions {
   std::optional<double> voxel_m;  ///< thin both maps first
   std::optional<Box3d> crop;      ///< reference frame
   std::vector<std::string> as;    ///< mapeval, open3d, mpeg, cloudcompare
+  std::uint64_t bootstrap = 0;    ///< replicates for confidence intervals; 0: none
+  double block_m = 10.0;          ///< of the bootstrap
+  Observed observed = Observed::kNone;
+  bool sensitivity = false;
+  double sensitivity_translation_m = 0.01;
+  double sensitivity_rotation_deg = 0.1;
   IndexKind index = IndexKind::kBvh;
 };
 

@@ -16,4 +16,7 @@ struct MeanMapEntropy {
 };
 MeanMapEntropy mean_map_entropy(const NeighborhoodShape& shape, std::uint64_t min_neighbors);
 
+/// The entropy of one point's neighborhood; NaN where it is left out.
+double point_entropy(const NeighborhoodShape& shape, std::size_t slot, std::uint64_t min_neighbors);
+
 }  // namespace cmap

@@ -63,4 +63,7 @@ struct SpatialConsistency {
 };
 SpatialConsistency spatial_consistency(std::span<const VoxelDistance> voxels, int radius_voxels);
 
+/// What spatial_consistency averages, voxel by voxel; NaN where one is skipped.
+std::vector<double> local_variations(std::span<const VoxelDistance> voxels, int radius_voxels);
+
 }  // namespace cmap

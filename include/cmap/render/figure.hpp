@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 
 #include "cmap/render/image.hpp"
@@ -13,11 +14,16 @@ enum class Background { kWhite, kBlack, kTransparent };
 /// Throws UsageError on an unknown name.
 Background background_from_name(std::string_view name);
 
+/// Finds what every pixel shows; see splat().
+using Splatter = std::function<PixelMap(const PointBlocks&, const Projection&, const SplatOptions&)>;
+
 struct FigureOptions {
   int width_px = 1600;
   int height_px = 1000;
   Background background = Background::kWhite;
   double point_size = 1.0;  ///< factor on the size that closes the gaps between points
+  int samples = 2;          ///< along either axis of a pixel, averaged
+  Splatter splatter = splat;
 };
 
 /// Largest width and height of a figure.

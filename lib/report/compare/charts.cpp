@@ -8,7 +8,7 @@
 
 #include "cmap/core/round_number.hpp"
 #include "report/compare/score_table.hpp"
-#include "report/score_text.hpp"
+#include "report/table_text.hpp"
 
 namespace cmap {
 namespace {

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 
 #include "cmap/core/error.hpp"
 #include "cmap/report/comparison.hpp"
@@ -11,9 +12,18 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What was chosen to be computed; it changes no value.
+/// What was chosen to be computed beside the values; it changes none.
 bool is_choice(const std::string& parameter) {
-  return parameter == "metrics" || parameter == "as" || parameter == "lcr-curve";
+  static const std::set<std::string> kChoices{"metrics",
+                                              "as",
+                                              "lcr-curve",
+                                              "bootstrap",
+                                              "block",
+                                              "observed",
+                                              "sensitivity",
+                                              "sensitivity-translation",
+                                              "sensitivity-rotation"};
+  return kChoices.contains(parameter);
 }
 
 std::string shown(const Json& object, const std::string& key) {

@@ -10,7 +10,7 @@
 #include "report/compare/comparison_scores.hpp"
 #include "report/compare/html_tables.hpp"
 #include "report/compare/score_table.hpp"
-#include "report/score_text.hpp"
+#include "report/table_text.hpp"
 
 namespace cmap {
 namespace {

@@ -6,7 +6,7 @@
 #include "cmap/core/error.hpp"
 #include "cmap/eval/metric_catalog.hpp"
 #include "report/compare/score_table.hpp"
-#include "report/score_text.hpp"
+#include "report/table_text.hpp"
 
 namespace cmap {
 namespace {

@@ -4,7 +4,7 @@
 #include <openssl/evp.h>
 #include <openssl/sha.h>
 
-#include "report/score_text.hpp"
+#include "report/table_text.hpp"
 
 // Style and script are files of their own, read by the assembler.
 #define CMAP_EMBED(symbol, path)                                                                \

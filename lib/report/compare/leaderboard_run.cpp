@@ -10,6 +10,7 @@
 #include "cmap/core/error.hpp"
 #include "cmap/core/version.hpp"
 #include "cmap/eval/evaluation.hpp"
+#include "cmap/eval/sensitivity.hpp"
 #include "cmap/io/point_cloud_file.hpp"
 #include "cmap/report/figure_module.hpp"
 #include "cmap/report/html_report.hpp"
@@ -120,7 +121,7 @@ Runner::Runner(const LeaderboardManifest& manifest, const LeaderboardRun& run) :
   try {
     figures_.emplace();
     files_.emplace_back("figure.png");
-  } catch (const UnsupportedError& error) {
+  } catch (const UsageError& error) {
     say(fmt::format("no pictures: {}", error.what()));
   }
 }
@@ -150,9 +151,18 @@ Evaluated Runner::evaluate_files(const std::string& reference_path, const std::s
   reference.info.path = reference_path;  // as in the manifest
   estimate.info.path = estimate_path;
   const InputDescription about_reference = describe(reference), about_estimate = describe(estimate);
-  Evaluated evaluated{evaluate(std::move(reference.cloud), std::move(estimate.cloud), manifest_.options,
-                               Eigen::Matrix4d::Identity(), run_.progress),
-                      {}};
+  const EvaluationOptions& options = manifest_.options;
+  const Eigen::Matrix4d T_ref_est = Eigen::Matrix4d::Identity();
+  std::optional<SensitivityBand> band;
+  if (options.sensitivity) {
+    band = sensitivity_band(reference.cloud, estimate.cloud, options, T_ref_est, run_.progress);
+  }
+  Evaluated evaluated{
+      evaluate(std::move(reference.cloud), std::move(estimate.cloud), options, T_ref_est, run_.progress), {}};
+  if (band) {
+    band->include(evaluated.evaluation);
+    evaluated.evaluation.sensitivity = band->json(options);
+  }
   evaluated.report = make_report(about_reference, about_estimate, evaluated.evaluation, {});
   // Times would make two runs differ.
   evaluated.report["run"] = {{"command", command_for(reference_path, estimate_path, manifest_.options)}};

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "cmap/eval/metric_catalog.hpp"
-#include "report/score_text.hpp"
+#include "report/table_text.hpp"
 
 namespace cmap {
 namespace {
@@ -20,7 +20,7 @@ ScoreKind kind_of(const MetricInfo& info) {
   kind.symbol = info.symbol;
   kind.unit = info.unit;
   kind.better = info.better;
-  kind.share = is_share(info.id);
+  kind.share = is_share(info);
   kind.headline = true;
   return kind;
 }

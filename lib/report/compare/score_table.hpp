@@ -12,7 +12,7 @@ namespace cmap {
 enum class Mark { kNone, kBest, kSecond, kBetter, kWorse };
 
 /// Where a table has no number.
-inline constexpr std::string_view kFailedMark = "x";
+inline constexpr std::string_view kNoValue = "-", kFailedMark = "x";
 
 struct TableCell {
   std::string text;

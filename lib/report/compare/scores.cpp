@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "cmap/eval/metric_catalog.hpp"
-#include "report/score_text.hpp"
+#include "report/table_text.hpp"
 
 namespace cmap {
 namespace {
@@ -24,7 +24,7 @@ ScoreKind kind_of(const std::string& id, const Json& record) {
   kind.symbol = record.at("symbol").get<std::string>();
   kind.unit = record.at("unit").get<std::string>();
   if (record.at("better").is_string()) kind.better = record.at("better").get<std::string>();
-  kind.share = is_share(id);
+  kind.share = info != nullptr && is_share(*info);
   return kind;
 }
 

@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "report/compare/score_table.hpp"
-#include "report/score_text.hpp"
+#include "report/table_text.hpp"
 
 namespace cmap {
 namespace {

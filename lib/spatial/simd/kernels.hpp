@@ -5,6 +5,7 @@
 
 #include "cmap/core/simd.hpp"
 #include "cmap/spatial/bvh.hpp"
+#include "cmap/spatial/k_nearest.hpp"
 #include "cmap/spatial/nearest.hpp"
 #include "cmap/spatial/radius.hpp"
 
@@ -45,6 +46,9 @@ struct Kernels {
   void (*hilbert_keys)(const Eigen::Vector3f* positions, std::size_t n, const CurveGrid& grid,
                        std::uint64_t first_index, std::uint64_t* keys);
   void (*nearest)(const Bvh& index, const Queries& queries, std::size_t begin, std::size_t end, NearestField& result);
+  /// k slots for each query slot.
+  void (*k_nearest)(const Bvh& index, const Queries& queries, std::size_t k, std::size_t begin, std::size_t end,
+                    std::uint32_t* slots);
   void (*most_similar_color)(const ColoredIndex& target, const ColorQueries& queries, const ColorSearch& search,
                              std::size_t begin, std::size_t end, Array<float>& best);
   void (*neighborhood_shapes)(const Bvh& cloud, double radius_m, std::size_t begin, std::size_t end,

@@ -10,6 +10,7 @@
 #include "spatial/simd/hilbert.inl"
 #include "spatial/simd/traversal.inl"
 #include "spatial/simd/nearest.inl"
+#include "spatial/simd/k_nearest.inl"
 #include "spatial/simd/color_within.inl"
 #include "spatial/simd/neighborhood.inl"
 // clang-format on
@@ -17,6 +18,6 @@
 namespace cmap::CMAP_LANES {
 
 extern const Kernels kKernels;
-const Kernels kKernels{&hilbert_keys, &nearest, &most_similar_color, &neighborhood_shapes};
+const Kernels kKernels{&hilbert_keys, &nearest, &k_nearest, &most_similar_color, &neighborhood_shapes};
 
 }  // namespace cmap::CMAP_LANES

@@ -22,6 +22,9 @@ export interface Report {
   alignment: Json;
   metrics: Record<string, Json>;
   aliases?: Json;
+  intervals?: Json;
+  sensitivity?: Json;
+  unobserved?: Json;
   warnings: { id: string; message: string }[];
   run: Json;
 }

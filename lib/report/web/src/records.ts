@@ -1,6 +1,6 @@
 // The metrics of a report as rows of a table: one per value, so that of per-threshold metrics one per threshold.
 import type { Json, JsonValue, MetricText, Page, Report } from './contract';
-import { short, withUnit } from './format';
+import { number, short, withUnit } from './format';
 
 export interface Metric extends MetricText {
   symbol: string;
@@ -42,6 +42,29 @@ export function flatten(record: Json, prefix = ''): [string, JsonValue][] {
 
 function facts(record: Json): [string, JsonValue][] {
   return flatten(Object.fromEntries(Object.entries(record).filter(([key]) => !shownElsewhere.has(key))));
+}
+
+/** What such a part of the report says of a metric, or of its value at a threshold. */
+function beside(part: Json | undefined, id: string, threshold: JsonValue | undefined): Json | undefined {
+  const metric = (part?.metrics as Record<string, Json> | undefined)?.[id];
+  if (threshold === undefined) return metric;
+  return (metric?.per_threshold as Json[] | undefined)?.find((entry) => entry.threshold_m === threshold);
+}
+
+const span = (from: JsonValue, to: JsonValue) =>
+  typeof from === 'number' && typeof to === 'number' ? `${number(from)} to ${number(to)}` : null;
+
+/** Intervals and the like, where the report has them. */
+function fairness(report: Report, id: string, threshold: JsonValue | undefined): [string, JsonValue][] {
+  const { intervals, sensitivity, unobserved } = report;
+  const interval = beside(intervals, id, threshold);
+  const band = beside(sensitivity, id, threshold);
+  const observed = beside(unobserved, id, threshold);
+  const facts: [string, JsonValue][] = [];
+  if (interval) facts.push([`${100 * Number(intervals?.level)} % interval`, span(interval.lower, interval.upper)]);
+  if (band) facts.push(['when a little off', span(band.lowest, band.highest)]);
+  if (observed) facts.push(['without the unobserved', observed.value]);
+  return facts;
 }
 
 function rangeText({ lo_m, hi_m }: Json): string {
@@ -97,7 +120,7 @@ export function metricRows(report: Report, page: Page | undefined): MetricRow[] 
         key,
         value,
         reason,
-        facts: [...facts(entry), ...common],
+        facts: [...fairness(report, id, entry.threshold_m), ...facts(entry), ...common],
       });
     });
   }

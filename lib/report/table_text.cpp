@@ -1,8 +1,7 @@
-#include "report/score_text.hpp"
+#include "report/table_text.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace cmap {
@@ -10,7 +9,7 @@ namespace cmap {
 using Json = nlohmann::ordered_json;
 
 std::string digits(const Json& value) {
-  if (!value.is_number()) return std::string(kNoValue);
+  if (!value.is_number()) return "-";
   // Rounded first: 999.96 has four digits before the point.
   const double v = std::stod(fmt::format("{:.3e}", value.get<double>()));
   if (v == 0.0) return "0";
@@ -21,12 +20,20 @@ std::string digits(const Json& value) {
 }
 
 std::string hundredths(const Json& value) {
-  if (!value.is_number()) return std::string(kNoValue);
+  if (!value.is_number()) return "-";
   const double percent = 100.0 * value.get<double>();
   return percent > 0.0 && percent < 0.005 ? "< 0.01" : fmt::format("{:.2f}", percent);
 }
 
-std::string percent(const Json& value) { return value.is_number() ? hundredths(value) + " %" : std::string(kNoValue); }
+bool is_share(const MetricInfo& info) {
+  return info.id == "overlap" || info.id == "local_color_recall" || info.id == "fitness" || info.id == "completeness" ||
+         info.id == "f_score";
+}
+
+std::string shown_unit(const MetricInfo& info) {
+  if (is_share(info)) return "%";
+  return info.unit == "1" ? "" : std::string(info.unit);
+}
 
 std::string with_thousands(const Json& count) {
   std::string text = std::to_string(count.get<std::uint64_t>());
@@ -36,17 +43,14 @@ std::string with_thousands(const Json& count) {
 }
 
 std::size_t character_count(std::string_view text) {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+  std::size_t characters = 0;
+  for (char c : text) characters += (static_cast<unsigned char>(c) & 0xC0) != 0x80 ? 1 : 0;
+  return characters;
 }
 
 std::string padded(std::string_view text, std::size_t width) {
   const std::size_t characters = character_count(text);
   return std::string(text) + std::string(width > characters ? width - characters : 0, ' ');
-}
-
-bool is_share(std::string_view id) {
-  return id == "overlap" || id == "local_color_recall" || id == "fitness" || id == "completeness" || id == "f_score";
 }
 
 }  // namespace cmap

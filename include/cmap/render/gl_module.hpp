@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+
+#include "cmap/render/figure.hpp"
+
+namespace cmap {
+
+/// What the viewer shows at first, and how it explains a point that was picked: one line each.
+struct ViewerScene {
+  std::string title;
+  std::span<const Layer> layers;
+  Camera camera;
+  FigureOptions options;
+  std::function<std::vector<std::string>(const PointBlocks& points, std::size_t slot)> describe_point;
+};
+
+/// The module gl, loaded when it is asked for: programs that may draw by OpenGL start without it.
+class GlModule {
+ public:
+  /// Throws UsageError where cmap was built without OpenGL.
+  GlModule();
+
+  /// A splatter for FigureOptions that draws by OpenGL (cmap/gl/splat_gl.hpp), and the device's name. Throws UsageError
+  /// where there is no device. Use from one thread at a time.
+  Splatter open_splatter(std::string& device) const;
+
+  /// Throws UsageError where view() would.
+  void require_display() const { require_display_(); }
+
+  /// Shows the scene in a window until the user closes it; see cmap/gl/viewer.hpp.
+  void view(const ViewerScene& scene) const { view_(scene); }
+
+ private:
+  using SplatInto = std::function<void(const PointBlocks&, const Projection&, const SplatOptions&, PixelMap&)>;
+  void (*open_splatter_)(SplatInto&, std::string&);
+  void (*require_display_)();
+  void (*view_)(const ViewerScene&);
+};
+
+}  // namespace cmap

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+
+#include "cmap/align/similarity.hpp"
+
+namespace cmap {
+
+using Vector7d = Eigen::Matrix<double, 7, 1>;
+using Matrix7d = Eigen::Matrix<double, 7, 7>;
+
+/// Normal equations of one step x -> exp(scale) exp(rotation) (x - pivot) + pivot + translation. Parameters in order:
+/// rotation (rad), translation (m), log scale.
+struct NormalEquations {
+  Matrix7d H = Matrix7d::Zero();
+  Vector7d g = Vector7d::Zero();
+  std::size_t n = 0;
+  NormalEquations& operator+=(const NormalEquations& other) {
+    H += other.H;
+    g += other.g;
+    n += other.n;
+    return *this;
+  }
+  /// Adds weight (r . normal)^2, r the residual of a moved point `arm` away from the pivot.
+  void add_plane(const Eigen::Vector3d& arm, const Eigen::Vector3d& r, const Eigen::Vector3d& normal, double weight);
+  /// Adds weight r^T M r.
+  void add(const Eigen::Vector3d& arm, const Eigen::Vector3d& r, const Eigen::Matrix3d& M, double weight);
+};
+
+/// The Gauss-Newton step as a transform about the pivot. Directions that the equations do not determine stay;
+/// lever_m makes rotation, scale and translation comparable.
+Similarity solve_step(const NormalEquations& equations, bool with_scale, double lever_m, const Eigen::Vector3d& pivot);
+
+/// Condition and weakest direction of an information matrix; see Alignment.
+struct Observability {
+  double condition = 0.0;
+  std::string weakest;
+};
+Observability observability(const Matrix7d& H, bool with_scale, double lever_m);
+
+}  // namespace cmap

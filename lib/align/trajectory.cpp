@@ -1,0 +1,114 @@
+#include "cmap/align/trajectory.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "align/information.hpp"
+#include "cmap/core/error.hpp"
+
+namespace cmap {
+namespace {
+
+constexpr std::array<const char*, 3> kMethodNames{"trajectory-first-frame", "trajectory-se3", "trajectory-sim3"};
+
+/// Trajectories this close to a line leave the rotation about it to noise.
+constexpr double kWeak = 1e-3;
+
+Similarity first_frame(const PosePair& pair) {
+  Similarity T;
+  T.rotation = (pair.target.rotation * pair.source.rotation.conjugate()).toRotationMatrix();
+  T.translation = pair.target.position - T.rotation * pair.source.position;
+  return T;
+}
+
+PairMoments center_moments(std::span<const PosePair> pairs) {
+  return pair_moments(pairs.size(), [&](std::size_t i) {
+    return WeightedPair{pairs[i].source.position, pairs[i].target.position, 1.0};
+  });
+}
+
+/// Information of positions: every pair says where its point is.
+void add_observability(std::span<const PosePair> pairs, const Similarity& T, bool with_scale, Alignment& result) {
+  const PairMoments moments = center_moments(pairs);
+  NormalEquations information;
+  for (const PosePair& pair : pairs) {
+    information.add(T * pair.source.position - T * moments.mean_p, Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity(),
+                    1.0);
+  }
+  const double lever_m = T.scale * std::sqrt(moments.scatter_p.trace() / moments.weight);
+  const Observability found = observability(information.H, with_scale, lever_m);
+  result.condition = found.condition;
+  result.weakest = found.weakest;
+  if (result.condition < kWeak) {
+    result.warnings.push_back(
+        fmt::format("{} is only weakly determined (condition {:.1e})", found.weakest, found.condition));
+  }
+}
+
+void require_common_times(const Trajectory& source, const Trajectory& target, std::size_t n_pairs, double max_gap_s) {
+  if (n_pairs > 0) return;
+  if (source.empty() || target.empty()) throw UnsupportedError("a trajectory without poses cannot be aligned");
+  throw UnsupportedError(fmt::format(
+      "the times do not meet: the source is from {} to {} s, the target from {} to {} s, gaps of at most {} s",
+      source.front().time_s, source.back().time_s, target.front().time_s, target.back().time_s, max_gap_s));
+}
+
+}  // namespace
+
+std::optional<StampedPose> pose_at(const Trajectory& trajectory, double time_s, double max_gap_s) {
+  const auto after = std::lower_bound(trajectory.begin(), trajectory.end(), time_s,
+                                      [](const StampedPose& pose, double t) { return pose.time_s < t; });
+  if (after == trajectory.end()) return std::nullopt;
+  if (after->time_s == time_s) return *after;
+  if (after == trajectory.begin()) return std::nullopt;
+  const StampedPose& before = *(after - 1);
+  const double gap_s = after->time_s - before.time_s;
+  if (gap_s > max_gap_s) return std::nullopt;
+  const double share = (time_s - before.time_s) / gap_s;
+  return StampedPose{time_s, before.position + share * (after->position - before.position),
+                     before.rotation.slerp(share, after->rotation)};
+}
+
+std::vector<PosePair> pair_in_time(const Trajectory& source, const Trajectory& target, double max_gap_s) {
+  std::vector<PosePair> pairs;
+  for (const StampedPose& pose : source) {
+    if (const auto there = pose_at(target, pose.time_s, max_gap_s)) pairs.push_back({pose, *there});
+  }
+  return pairs;
+}
+
+Similarity fit_centers(std::span<const PosePair> pairs, const ScaleModel& model) {
+  return fit_similarity(center_moments(pairs), model);
+}
+
+Alignment align_trajectories(const Trajectory& source, const Trajectory& target, TrajectoryFit fit, double max_gap_s) {
+  const std::vector<PosePair> pairs = pair_in_time(source, target, max_gap_s);
+  require_common_times(source, target, pairs.size(), max_gap_s);
+  const bool with_scale = fit == TrajectoryFit::kSim3;
+  const Similarity T = fit == TrajectoryFit::kFirstFrame
+                           ? first_frame(pairs.front())
+                           : fit_centers(pairs, with_scale ? ScaleModel::free() : ScaleModel::rigid());
+  Alignment result;
+  result.method = kMethodNames[static_cast<std::size_t>(fit)];
+  result.T_dst_src = T.matrix();
+  result.scale = T.scale;
+  result.n_source = source.size();
+  result.n_target = target.size();
+  result.n_matches = pairs.size();
+  result.overlap = static_cast<double>(pairs.size()) / static_cast<double>(source.size());
+  double sum_sq = 0.0;
+  for (const PosePair& pair : pairs) sum_sq += (T * pair.source.position - pair.target.position).squaredNorm();
+  result.rmse_m = std::sqrt(sum_sq / static_cast<double>(pairs.size()));
+  if (fit == TrajectoryFit::kFirstFrame) {
+    result.condition = 1.0;  // a pose is complete
+  } else {
+    add_observability(pairs, T, with_scale, result);
+  }
+  result.converged = true;
+  return result;
+}
+
+}  // namespace cmap

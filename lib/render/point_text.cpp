@@ -1,0 +1,34 @@
+#include "cmap/render/point_text.hpp"
+
+#include <fmt/format.h>
+
+namespace cmap {
+
+std::vector<std::string> describe_point(const IndexedMap& map, std::size_t slot) {
+  const Eigen::Vector3d p = map.index.points.world(slot);
+  std::vector<std::string> lines{fmt::format("x {:.3f}  y {:.3f}  z {:.3f} m", p.x(), p.y(), p.z())};
+  if (map.has_color()) {
+    const Eigen::Vector3d c = map.color(slot);
+    lines.push_back(fmt::format("color {:.4g} {:.4g} {:.4g} of 255", c[0], c[1], c[2]));
+  }
+  return lines;
+}
+
+std::vector<std::string> describe_point(const Evaluation& evaluation, const PointBlocks& points, std::size_t slot) {
+  const MapPair& pair = evaluation.pair;
+  const bool of_reference = &points == &pair.reference.index.points;
+  const NearestPairs pairs = of_reference ? pair.reference_to_estimate() : pair.estimate_to_reference();
+  std::vector<std::string> lines{of_reference ? "point of the reference" : "point of the estimate"};
+  for (std::string& line : describe_point(pairs.from, slot)) lines.push_back(std::move(line));
+  const char* other = of_reference ? "estimate" : "reference";
+  lines.push_back(fmt::format("distance to the {} {:.4g} m", other, pairs.distance_m(slot)));
+  if (pair.has_color()) lines.push_back(fmt::format("color distance {:.4g} unit RGB", pairs.color_distance(slot)));
+  if (of_reference && evaluation.recall) {
+    constexpr const char* kClasses[] = {"not covered", "wrong color", "recalled"};
+    const auto recall = static_cast<std::size_t>(evaluation.recall->classes[slot]);
+    lines.push_back(fmt::format("local color recall: {}", kClasses[recall]));
+  }
+  return lines;
+}
+
+}  // namespace cmap

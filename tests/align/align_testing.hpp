@@ -1,0 +1,65 @@
+#pragma once
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <random>
+
+#include "cmap/align/similarity.hpp"
+#include "cmap/core/error.hpp"
+#include "spatial/clouds.hpp"
+
+namespace cmap::test {
+
+inline double uniform_in(std::mt19937_64& random, double low, double high) {
+  return low + (high - low) * uniform(random);
+}
+
+/// Uniform over all rotations (Shoemake's method).
+inline Eigen::Matrix3d random_rotation(std::mt19937_64& random) {
+  const double u = uniform(random), a = 2.0 * M_PI * uniform(random), b = 2.0 * M_PI * uniform(random);
+  return Eigen::Quaterniond(std::sqrt(u) * std::cos(b), std::sqrt(1 - u) * std::sin(a), std::sqrt(1 - u) * std::cos(a),
+                            std::sqrt(u) * std::sin(b))
+      .toRotationMatrix();
+}
+
+inline Eigen::Vector3d random_vector(std::mt19937_64& random, double reach) {
+  const double x = uniform_in(random, -reach, reach), y = uniform_in(random, -reach, reach);
+  return {x, y, uniform_in(random, -reach, reach)};
+}
+
+inline Similarity random_similarity(std::mt19937_64& random, double low_scale, double high_scale, double reach_m) {
+  const double scale = uniform_in(random, low_scale, high_scale);
+  const Eigen::Matrix3d rotation = random_rotation(random);
+  return {scale, rotation, random_vector(random, reach_m)};
+}
+
+/// The largest displacement between two transforms on the corners of the box of a cloud, m.
+inline double displacement_m(const Similarity& a, const Similarity& b, const PointCloud& cloud) {
+  const Box3d box = bounds(cloud);
+  double largest = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d x((corner & 1 ? box.max : box.min).x(), (corner & 2 ? box.max : box.min).y(),
+                            (corner & 4 ? box.max : box.min).z());
+    largest = std::max(largest, (a * x - b * x).norm());
+  }
+  return largest;
+}
+
+inline double angle_between_deg(const Similarity& a, const Similarity& b) {
+  return rotation_angle_rad(a.rotation.transpose() * b.rotation) * 180.0 / M_PI;
+}
+
+/// The message of the UnsupportedError that a call ends with; empty if there is none.
+template <class Call>
+std::string unsupported(Call&& call) {
+  try {
+    call();
+  } catch (const UnsupportedError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+}  // namespace cmap::test
