@@ -4,10 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <list>
 #include <optional>
@@ -150,12 +148,6 @@ void check_outputs(const Arguments& a) {
   }
 }
 
-void print(const std::string& text) {
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
-    throw cmap::UsageError(fmt::format("standard output: {}", std::strerror(errno)));
-  }
-}
-
 /// Prints and writes everything: all outputs or none, and none before the last one is complete.
 void deliver(const Arguments& arguments, const cmap::Evaluation& evaluation, const nlohmann::ordered_json& report,
              const std::optional<cmap::FigureModule>& figures) {
@@ -171,22 +163,8 @@ void deliver(const Arguments& arguments, const cmap::Evaluation& evaluation, con
   write(arguments.html, [&](cmap::OutputFile& file) { cmap::write_html_report(report, evaluation, file); });
   write(arguments.figure, [&](cmap::OutputFile& file) { figures->write(evaluation, arguments.figure, file); });
   write(arguments.output, [&](cmap::OutputFile& file) { file.write(report_text); });
-  if (!arguments.common.quiet) print(arguments.format == "json" ? report_text : cmap::format_table(report));
+  if (!arguments.common.quiet) cmap::print(arguments.format == "json" ? report_text : cmap::format_table(report));
   for (cmap::OutputFile& file : files) file.commit();
-}
-
-/// The command line as one would type it into a shell.
-std::string as_typed(const char* const* argv, int argc) {
-  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%#";
-  std::string command;
-  for (std::string word : std::vector<std::string>(argv, argv + argc)) {
-    if (word.empty() || word.find_first_not_of(kPlain) != word.npos) {
-      for (std::size_t at = 0; (at = word.find('\'', at)) != word.npos; at += 4) word.replace(at, 1, "'\\''");
-      word = fmt::format("'{}'", word);
-    }
-    command += fmt::format("{}{}", command.empty() ? "" : " ", word);
-  }
-  return command;
 }
 
 ExitCode run(const Arguments& arguments, const std::string& command) {
@@ -236,5 +214,5 @@ int main(int argc, char** argv) {
   app.footer(kExample);
   Arguments arguments;
   add_options(app, arguments);
-  return cmap::run_program(app, argc, argv, [&] { return run(arguments, as_typed(argv, argc)); });
+  return cmap::run_program(app, argc, argv, [&] { return run(arguments, cmap::shell_command({argv, argv + argc})); });
 }

@@ -5,7 +5,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
+#include <string>
 
 #include "cmap/core/error.hpp"
 #include "cmap/core/version.hpp"
@@ -28,6 +31,13 @@ inline void add_common_options(CLI::App& app, CommonArguments& arguments, const 
 inline void refuse_empty(CLI::App& app, std::initializer_list<const char*> options) {
   const CLI::Validator not_empty([](std::string& text) { return text.empty() ? std::string("is empty") : ""; }, "");
   for (const char* name : options) app.get_option(name)->check(not_empty);
+}
+
+/// To standard output; throws UsageError where that fails, as on a full disk.
+inline void print(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+    throw UsageError(fmt::format("standard output: {}", std::strerror(errno)));
+  }
 }
 
 /// Parses the command line, calls run(), and turns what it throws into a message on stderr and an exit code.

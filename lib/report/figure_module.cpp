@@ -9,6 +9,7 @@ FigureModule::FigureModule() {
                             "this build has no figures (tools/install_dependencies.sh, build again)");
   module.find("cmap_figure_check_name", check_name_);
   module.find("cmap_figure_write", write_);
+  module.find("cmap_figure_write_drawing", write_drawing_);
 }
 
 }  // namespace cmap

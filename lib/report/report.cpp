@@ -1,5 +1,6 @@
 #include "cmap/report/report.hpp"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <Eigen/LU>
@@ -116,6 +117,19 @@ void add_input_warnings(Json& warnings, const char* which, const InputDescriptio
 
 InputDescription describe(const PointCloudFile& file) {
   return {file.info, std::string(color_type_name(file.cloud.colors)), file.cloud.origin, bounds(file.cloud)};
+}
+
+std::string shell_command(const std::vector<std::string>& words) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%#";
+  std::string command;
+  for (std::string word : words) {
+    if (word.empty() || word.find_first_not_of(kPlain) != word.npos) {
+      for (std::size_t at = 0; (at = word.find('\'', at)) != word.npos; at += 4) word.replace(at, 1, "'\\''");
+      word = fmt::format("'{}'", word);
+    }
+    command += fmt::format("{}{}", command.empty() ? "" : " ", word);
+  }
+  return command;
 }
 
 Json make_report(const InputDescription& reference, const InputDescription& estimate, const Evaluation& evaluation,

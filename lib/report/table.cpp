@@ -11,13 +11,6 @@ using Json = nlohmann::ordered_json;
 
 std::string percent(const Json& value) { return value.is_number() ? hundredths(value) + " %" : digits(value); }
 
-std::string with_thousands(const Json& count) {
-  std::string text = std::to_string(count.get<std::uint64_t>());
-  for (std::size_t place = text.size(); place > 3; place -= 3)
-    text.insert(text.begin() + static_cast<std::ptrdiff_t>(place - 3), ',');
-  return text;
-}
-
 std::string_view arrow(const Json& metric) {
   const Json& better = metric.at("better");
   return better == "lower" ? "↓" : better == "higher" ? "↑" : " ";

@@ -35,9 +35,21 @@ std::string shown_unit(const MetricInfo& info) {
   return info.unit == "1" ? "" : std::string(info.unit);
 }
 
-std::string padded(std::string_view text, std::size_t width) {
+std::string with_thousands(const Json& count) {
+  std::string text = std::to_string(count.get<std::uint64_t>());
+  for (std::size_t place = text.size(); place > 3; place -= 3)
+    text.insert(text.begin() + static_cast<std::ptrdiff_t>(place - 3), ',');
+  return text;
+}
+
+std::size_t character_count(std::string_view text) {
   std::size_t characters = 0;
   for (char c : text) characters += (static_cast<unsigned char>(c) & 0xC0) != 0x80 ? 1 : 0;
+  return characters;
+}
+
+std::string padded(std::string_view text, std::size_t width) {
+  const std::size_t characters = character_count(text);
   return std::string(text) + std::string(width > characters ? width - characters : 0, ' ');
 }
 

@@ -25,6 +25,12 @@ inline std::string shown(const MetricInfo& info, const nlohmann::ordered_json& v
 /// The unit beside it; none for ratios.
 std::string shown_unit(const MetricInfo& info);
 
+/// 12,345
+std::string with_thousands(const nlohmann::ordered_json& count);
+
+/// Characters of a UTF-8 text, not bytes: arrows and deltas are several bytes long.
+std::size_t character_count(std::string_view text);
+
 /// Pads by characters, not bytes: arrows and deltas are several bytes long.
 std::string padded(std::string_view text, std::size_t width);
 

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "cmap/core/drawing.hpp"
 #include "cmap/eval/evaluation.hpp"
 #include "cmap/io/output_file.hpp"
 
@@ -21,9 +22,15 @@ class FigureModule {
     write_(evaluation, name, file);
   }
 
+  /// The drawing as a picture of the name's format.
+  void write(const Drawing& drawing, const std::filesystem::path& name, OutputFile& file) const {
+    write_drawing_(drawing, name, file);
+  }
+
  private:
   void (*check_name_)(const std::filesystem::path&);
   void (*write_)(const Evaluation&, const std::filesystem::path&, OutputFile&);
+  void (*write_drawing_)(const Drawing&, const std::filesystem::path&, OutputFile&);
 };
 
 }  // namespace cmap

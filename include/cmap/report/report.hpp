@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "cmap/eval/evaluation.hpp"
 #include "cmap/io/point_cloud_file.hpp"
@@ -16,6 +17,9 @@ struct InputDescription {
   Box3d bounds_m;
 };
 InputDescription describe(const PointCloudFile& file);
+
+/// A command line as one would type it into a shell.
+std::string shell_command(const std::vector<std::string>& words);
 
 /// How the evaluation was run: the only part of a report that differs between two equal runs.
 struct RunDescription {

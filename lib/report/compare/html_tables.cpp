@@ -1,0 +1,122 @@
+#include "report/compare/html_tables.hpp"
+
+#include <fmt/format.h>
+#include <openssl/evp.h>
+#include <openssl/sha.h>
+
+#include "report/table_text.hpp"
+
+// Style and script are files of their own, read by the assembler.
+#define CMAP_EMBED(symbol, path)                                                                \
+  asm(".section .rodata\n" #symbol "_begin:\n.incbin \"" path "\"\n" #symbol "_end:\n.text\n"); \
+  extern "C" {                                                                                  \
+  extern const char symbol##_begin[];                                                           \
+  extern const char symbol##_end[];                                                             \
+  }
+
+CMAP_EMBED(cmap_tables_css, CMAP_TABLES_PAGE "/tables.css")
+CMAP_EMBED(cmap_tables_js, CMAP_TABLES_PAGE "/tables.js")
+
+namespace cmap {
+namespace {
+
+std::string_view style() { return {cmap_tables_css_begin, cmap_tables_css_end}; }
+std::string_view script() { return {cmap_tables_js_begin, cmap_tables_js_end}; }
+
+/// How a content security policy names an inline script or style.
+std::string policy_hash(std::string_view text) {
+  unsigned char digest[SHA256_DIGEST_LENGTH];
+  SHA256(reinterpret_cast<const unsigned char*>(text.data()), text.size(), digest);
+  unsigned char base64[4 * ((SHA256_DIGEST_LENGTH + 2) / 3) + 1];
+  EVP_EncodeBlock(base64, digest, SHA256_DIGEST_LENGTH);
+  return fmt::format("'sha256-{}'", reinterpret_cast<const char*>(base64));
+}
+
+std::string policy() {
+  return fmt::format(
+      "default-src 'none'; script-src {}; style-src {}; img-src 'self' file: data:; base-uri 'none'; form-action "
+      "'none'",
+      policy_hash(script()), policy_hash(style()));
+}
+
+std::string heading_cell(const std::string& text, const char* kind) {
+  return fmt::format("<th scope=\"col\" class=\"{}\">{}</th>", kind, escaped_html(text));
+}
+
+const char* look_of(const TableCell& cell) {
+  switch (cell.mark) {
+    case Mark::kBest:
+      return "value best";
+    case Mark::kSecond:
+      return "value second";
+    case Mark::kBetter:
+      return "value better";
+    case Mark::kWorse:
+      return "value worse";
+    case Mark::kNone:
+      break;
+  }
+  return cell.value ? "value" : "value none";
+}
+
+std::string value_cell(const TableCell& cell) {
+  std::string attributes = fmt::format("class=\"{}\"", look_of(cell));
+  if (cell.value) attributes += fmt::format(" data-value=\"{}\"", *cell.value);
+  if (!cell.note.empty()) attributes += fmt::format(" title=\"{}\"", escaped_html(cell.note));
+  return fmt::format("<td {}>{}</td>", attributes, escaped_html(cell.text));
+}
+
+}  // namespace
+
+HtmlPage::HtmlPage(std::string_view title) : title_(escaped_html(title)) {
+  body_ = fmt::format("<h1>{}</h1>\n", title_);
+}
+
+void HtmlPage::add_heading(std::string_view text, std::string_view id) {
+  body_ +=
+      fmt::format("<h2{}>{}</h2>\n", id.empty() ? "" : fmt::format(" id=\"{}\"", escaped_html(id)), escaped_html(text));
+}
+
+void HtmlPage::add_paragraph(std::string_view text) {
+  body_ += fmt::format("<p class=\"note\">{}</p>\n", escaped_html(text));
+}
+
+void HtmlPage::add_key(std::string_view text) {
+  body_ += fmt::format(
+      "<p class=\"note key\"><span class=\"best\">best</span><span class=\"second\">second best</span>{}</p>\n",
+      escaped_html(text));
+}
+
+void HtmlPage::add_table(const ScoreTable& table) {
+  body_ += fmt::format("<div class=\"frame\"><table id=\"{}\">", escaped_html(table.id));
+  if (!table.title.empty()) body_ += fmt::format("<caption>{}</caption>", escaped_html(table.title));
+  body_ += "<thead><tr>";
+  for (const std::string& column : table.head_columns) body_ += heading_cell(column, "head");
+  for (const std::string& column : table.value_columns) body_ += heading_cell(column, "value");
+  body_ += "</tr></thead>\n<tbody>\n";
+  for (const TableRow& row : table.rows) {
+    body_ += "<tr>";
+    for (const std::string& head : row.heads) {
+      const bool names_row = &head == &row.heads.front();
+      body_ += names_row ? "<th scope=\"row\">" : "<td class=\"head\">";
+      body_ += escaped_html(head);
+      body_ += names_row ? "</th>" : "</td>";
+    }
+    for (const TableCell& cell : row.cells) body_ += value_cell(cell);
+    body_ += "</tr>\n";
+  }
+  body_ += "</tbody></table>";
+  for (const std::string& note : table.notes) body_ += fmt::format("<p class=\"note\">{}</p>", escaped_html(note));
+  body_ += "</div>\n";
+}
+
+std::string HtmlPage::finish() const {
+  return fmt::format(
+      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n"
+      "<style>{}</style>\n</head>\n<body>\n{}<script>{}</script>\n</body>\n</html>\n",
+      policy(), title_, style(), body_, script());
+}
+
+}  // namespace cmap

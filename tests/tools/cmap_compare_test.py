@@ -1,0 +1,183 @@
+#!/usr/bin/env python3
+"""Drives cmap_compare as a user does: formats, refusals, files that it writes."""
+
+import csv
+import io
+import json
+import os
+import re
+import subprocess
+import unittest
+import xml.etree.ElementTree as xml
+from pathlib import Path
+
+from cmap_eval_testing import DONE, INPUT, PROGRAM, SOURCE, USAGE, CmapEval
+from latex_check import check_latex
+
+COMPARE = Path(os.environ["CMAP_COMPARE"]).resolve()
+
+
+class Compare(CmapEval):
+    def setUp(self):
+        super().setUp()
+        self.a = self.report("a.json", self.reference, self.estimate, "--lcr-curve")
+        self.b = self.report("b.json", self.reference, self.reference, "--lcr-curve")
+
+    def report(self, name, *arguments):
+        path = self.inputs / name
+        subprocess.run([PROGRAM, *arguments, "--quiet", "-o", path], check=True)
+        return path
+
+    def compare(self, *arguments, code=DONE):
+        result = self.run_program(*arguments, program=(COMPARE,))
+        self.assertEqual(result.returncode, code, result.stderr.decode())
+        return result.stdout.decode()
+
+    def changed(self, name, change):
+        """A copy of report a with something changed."""
+        report = json.loads(self.a.read_text())
+        change(report)
+        return self.input(name, json.dumps(report))
+
+    def refused(self, code, says, *arguments):
+        """Nothing is printed or left behind."""
+        result = self.run_program(
+            *arguments, "-o", self.outputs / "table.txt", "--figure", self.outputs / "f.svg", program=(COMPARE,)
+        )
+        message = result.stderr.decode()
+        self.assertEqual(result.returncode, code, message)
+        self.assertTrue(message.startswith("cmap_compare: "), message)
+        for part in [says] if isinstance(says, str) else says:
+            self.assertIn(part, message)
+        self.assertEqual(result.stdout, b"")
+        self.assertEqual(os.listdir(self.outputs), [])
+
+    def test_text(self):
+        """The two-points pair by hand: chamfer 4.375, overlap 0.5; the reference against itself 0 and 1."""
+        table = self.compare(self.a, self.b)
+        self.assertRegex(table, r"metric +symbol +unit +a +b")
+        self.assertRegex(table, r"Chamfer distance +CD# +↓ +m +4.375\+ +0\*")
+        self.assertRegex(table, r"overlap +Overlap +↑ +% +50.00\+ +100.00\*")
+        self.assertRegex(table, r"average Wasserstein distance +AWD +↓ +m +- +-\n", "null is a dash, never 0")
+        self.assertIn("3 points, SHA-256", table)
+
+    def test_csv_has_the_numbers_of_the_reports(self):
+        rows = list(csv.DictReader(io.StringIO(self.compare(self.a, self.b, "--format", "csv"))))
+        reports = {name: json.loads((self.inputs / f"{name}.json").read_text())["metrics"] for name in "ab"}
+        for row in rows:
+            for name, metrics in reports.items():
+                record = metrics[row["metric"]]
+                if row["at_m"]:
+                    levels = {str(level["threshold_m"]): level["value"] for level in record["per_threshold"]}
+                    expected = levels[row["at_m"]]
+                else:
+                    expected = record["coverage"] if row["part"] else record["value"]
+                self.assertEqual(row[name], "" if expected is None else row[name])
+                self.assertEqual(float(row[name]) if row[name] else None, expected, row)
+        self.assertEqual(len(rows), 4 + 1 + 4 + 4 * 5 + 2, "color, coverage, geometry, thresholds, distribution")
+
+    def test_baseline(self):
+        for arguments in ((self.a, self.b), (self.b,)):
+            table = self.compare(*arguments, "--baseline", self.a)
+            self.assertIn("Better (+) or worse (-) than a", table)
+            self.assertRegex(table, r"Chamfer distance .*\+4.375 \(\+100.0 %\)")
+        self.assertRegex(self.compare(self.a, self.b, "--baseline", self.b), r"overlap .*-50.00 \(-50.0 %\)")
+
+    def test_names_and_metrics(self):
+        table = self.compare(self.a, self.b, "--names", "Ours,The truth", "--metrics", "AC,chamfer")
+        self.assertRegex(table, r"unit +Ours +The truth")
+        self.assertEqual(table.count("accuracy"), 5)
+        self.assertNotIn("overlap", table)
+
+    def test_markdown(self):
+        table = self.compare(self.a, self.b, "--format", "markdown", "--names", "a|b,c_d")
+        self.assertIn("| a\\|b | c\\_d |", table)
+        rows = [line for line in table.splitlines() if line.startswith("|")]
+        self.assertEqual({len(re.findall(r"(?<!\\)\|", row)) for row in rows}, {7})
+        self.assertIn("| *4.375* | **0** |", table)
+
+    def test_latex(self):
+        text = self.compare(self.a, self.b, "--format", "latex", "--names", "100 % & more_{},\\evil#~^", "--baseline", self.a)
+        self.assertIn("\\cellcolor{orange!35}4.375 & \\cellcolor{red!35}0", text)
+        check_latex(self, text, self.folder)
+
+    def test_html_is_self_contained(self):
+        page = self.compare(self.a, self.b, "--format", "html", "--names", "<img src=x>,b", "--baseline", self.a)
+        self.assertNotIn("<img", page)
+        self.assertNotRegex(page, r"(src|href)=\"(?!#)")
+        self.assertIn("default-src 'none'", page)
+        self.assertIn('class="value best" data-value="0"', page)
+
+    def test_output_file(self):
+        self.assertEqual(self.compare(self.a, self.b, "-o", self.outputs / "t.txt"), "")
+        self.assertEqual((self.outputs / "t.txt").read_text(), self.compare(self.a, self.b))
+
+    def test_figure(self):
+        svg = self.outputs / "f.svg"
+        self.compare(self.a, self.b, "--names", "<&>,b", "--figure", svg)
+        texts = [element.text for element in xml.parse(svg).getroot().iter("{http://www.w3.org/2000/svg}text")]
+        for text in ("<&>", "Chamfer distance ↓ [m]", "4.375", "accuracy ↓ [m]", "threshold [m]", "tau"):
+            self.assertIn(text, texts)
+        picture = self.outputs / "f.png"
+        if "CMAP_RENDER" in os.environ:
+            self.compare(self.a, self.b, "--figure", picture)
+            self.assertEqual(picture.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        else:
+            self.compare(self.a, self.b, "--figure", picture, code=USAGE)
+
+    def test_refuses_what_does_not_compare(self):
+        other = self.changed("other.json", lambda r: r["parameters"].update({"lcr-tau": 0.2}))
+        self.refused(USAGE, [f"{self.a} and {other} have different parameters", "lcr-tau is 0.1 and 0.2"], self.a, other)
+        other = self.changed("other.json", lambda r: r["inputs"]["reference"].update(sha256="0" * 64))
+        self.refused(USAGE, [f"{self.a} and {other} have different references", "cmap_leaderboard"], self.a, other)
+        other = self.changed("other.json", lambda r: r["metrics"]["chamfer"].update(unit="mm"))
+        self.refused(USAGE, f"{self.a} and {other} define chamfer differently", self.a, other)
+        self.refused(USAGE, "different parameters", other, "--baseline", self.report("c.json", self.reference, self.estimate, "--lcr-tau", "0.3"))
+
+    def test_refuses_what_is_no_report(self):
+        self.refused(USAGE, "is no report of cmap_eval: its schema is missing", self.a, self.input("x.json", "{}"))
+        newer = self.changed("x.json", lambda r: r.update(schema="cmap.report/2"))
+        self.refused(USAGE, f'{newer}: is no report of cmap_eval: its schema is "cmap.report/2"', self.a, newer)
+        self.refused(USAGE, "is no report", SOURCE / "configs/report.schema.json", self.a)
+        self.refused(INPUT, "parse error at line", self.a, self.input("x.json", self.a.read_text()[:500]))
+        self.refused(INPUT, "cannot be read as a report", self.a, self.inputs / "none.json")
+        self.refused(INPUT, "cannot be read as a report", self.a, self.inputs)
+        damaged = self.changed("x.json", lambda r: r["metrics"]["chamfer"].pop("value"))
+        self.refused(INPUT, f'{damaged}: damaged report: metrics.chamfer has no "value"', self.a, damaged)
+        self.refused(INPUT, "parse error", self.a, self.input("x.json", '{"schema": "cmap.report/1", "metrics": NaN}'))
+
+    def test_wrong_usage(self):
+        self.refused(USAGE, "is given twice", self.a, self.a)
+        self.refused(USAGE, "names: 1 for 2 reports", self.a, self.b, "--names", "x")
+        self.refused(USAGE, '"nonsense" is unknown', self.a, self.b, "--metrics", "nonsense")
+        self.refused(USAGE, "no report has any of MME", self.a, self.b, "--metrics", "MME")
+        self.refused(USAGE, "--baseline", self.a, self.b, "--baseline", "")
+        self.refused(USAGE, "--format", self.a, self.b, "--format", "pdf")
+        result = self.run_program(self.a, self.b, "-o", self.b, program=(COMPARE,))
+        self.assertEqual(result.returncode, USAGE)
+        self.assertIn("would overwrite", result.stderr.decode())
+        result = self.run_program(self.a, "--figure", self.outputs / "f.txt", program=(COMPARE,))
+        self.assertEqual(result.returncode, USAGE)
+        self.assertEqual(os.listdir(self.outputs), [])
+
+    def test_the_examples_of_the_help_run(self):
+        help_text = self.compare("--help")
+        examples = [line for line in help_text.splitlines() if line.startswith("  cmap_")]
+        self.assertEqual(len(examples), 5)
+        (self.folder / "data_samples").symlink_to(SOURCE / "data_samples")
+        (self.folder / "bin").mkdir()
+        for program in (PROGRAM, COMPARE):
+            (self.folder / "bin" / program.name).symlink_to(program)
+        result = self.run_program(
+            "-ec",
+            "\n".join(examples),
+            program=["bash"],
+            cwd=self.folder,
+            environment={"PATH": f"{self.folder}/bin:{os.environ['PATH']}"},
+        )
+        self.assertEqual(result.returncode, DONE, result.stderr.decode())
+        check_latex(self, (self.folder / "table.tex").read_text(), self.folder)
+
+
+if __name__ == "__main__":
+    unittest.main()

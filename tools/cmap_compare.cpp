@@ -1,0 +1,119 @@
+// cmap_compare A.json B.json ...: saved reports side by side.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <list>
+#include <map>
+
+#include "cmap/core/error.hpp"
+#include "cmap/io/output_file.hpp"
+#include "cmap/report/comparison.hpp"
+#include "files.hpp"
+#include "program.hpp"
+
+namespace {
+
+using cmap::ComparisonFormat;
+using cmap::ExitCode;
+
+constexpr const char* kDescription =
+    "Puts saved reports of cmap_eval side by side: one row for each metric, one column for each report, best and "
+    "second\n"
+    "best marked. Refuses reports whose numbers do not compare: other parameters, definitions or reference map.";
+
+constexpr const char* kExample =
+    "Examples:\n"
+    "  cmap_eval data_samples/town/reference.ply data_samples/town/estimate.ply --quiet -o a.json\n"
+    "  cmap_eval data_samples/town/reference.ply data_samples/town/reference.ply --quiet -o b.json\n"
+    "  cmap_compare a.json b.json --baseline a.json\n"
+    "  cmap_compare a.json b.json --figure chart.svg --format html -o comparison.html\n"
+    "  cmap_compare a.json b.json --names Ours,Truth --metrics color,AC --format latex -o table.tex\n"
+    "\n"
+    "Formats: text (* best, + second best), markdown, csv (all digits, empty where there is no value), latex "
+    "(booktabs,\n"
+    "xcolor), html (one file, sortable, offline).\n"
+    "Exit codes: 0 done; 2 wrong usage, no reports, or reports that do not compare; 3 a report is missing or damaged;\n"
+    "70 internal error.";
+
+struct Arguments {
+  std::vector<std::string> reports;
+  std::string format = "text", baseline, output, figure;
+  std::vector<std::string> metrics, names;
+};
+
+const std::map<std::string, ComparisonFormat> kFormats{{"text", ComparisonFormat::kText},
+                                                       {"markdown", ComparisonFormat::kMarkdown},
+                                                       {"csv", ComparisonFormat::kCsv},
+                                                       {"latex", ComparisonFormat::kLatex},
+                                                       {"html", ComparisonFormat::kHtml}};
+
+void add_options(CLI::App& app, Arguments& a) {
+  app.add_option("REPORT", a.reports, "reports of cmap_eval")->required()->type_name("A.json B.json ...");
+  app.add_option("--format", a.format, "text, markdown, csv, latex or html [text]")
+      ->type_name("FORMAT")
+      ->check(CLI::IsMember({"text", "markdown", "csv", "latex", "html"}).description(""));
+  app.add_option("--metrics", a.metrics, "groups, metric ids or symbols [all in the reports]")
+      ->type_name("LIST")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  app.add_option("--baseline", a.baseline,
+                 "also say by how much the others are better (+) or worse (-) than this report")
+      ->type_name("A.json");
+  app.add_option("--names", a.names, "headings of the columns [file names]")
+      ->type_name("A,B,...")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  app.add_option("-o,--output", a.output, "write here in place of standard output")->type_name("FILE");
+  app.add_option("--figure", a.figure, "chart of every metric, and curves: .svg, .png, .jpg, .tif")->type_name("FILE");
+  cmap::refuse_empty(app, {"--baseline", "--figure", "--metrics", "--names", "--output"});
+}
+
+/// Index of the baseline among the reports, which it joins as the first unless it is one of them.
+std::size_t place_baseline(const std::string& baseline, std::vector<std::string>& reports) {
+  std::error_code missing;
+  const auto found = std::ranges::find_if(
+      reports, [&](const std::string& report) { return std::filesystem::equivalent(report, baseline, missing); });
+  if (found != reports.end()) return static_cast<std::size_t>(found - reports.begin());
+  reports.insert(reports.begin(), baseline);
+  return 0;
+}
+
+ExitCode run(Arguments arguments) {
+  cmap::ComparisonOptions options{arguments.metrics, std::nullopt};
+  if (!arguments.baseline.empty()) options.baseline = place_baseline(arguments.baseline, arguments.reports);
+  cmap::refuse_overwriting(arguments.reports, {arguments.output, arguments.figure});
+  for (const std::string& output : {arguments.output, arguments.figure}) {
+    if (!output.empty()) cmap::require_writable(output);
+  }
+  if (!arguments.figure.empty()) cmap::check_figure_name(arguments.figure);
+  std::vector<cmap::SavedReport> reports;
+  for (const std::string& path : arguments.reports) reports.push_back(cmap::read_report(path));
+  cmap::name_reports(reports, arguments.names);
+  cmap::require_comparable(reports);
+  const std::string text = cmap::format_comparison(reports, options, kFormats.at(arguments.format));
+  std::list<cmap::OutputFile> files;
+  if (!arguments.figure.empty()) {
+    cmap::write_comparison_figure(reports, options, arguments.figure, files.emplace_back(arguments.figure));
+    files.back().finish();
+  }
+  if (!arguments.output.empty()) {
+    files.emplace_back(arguments.output).write(text);
+    files.back().finish();
+  } else {
+    cmap::print(text);
+  }
+  for (cmap::OutputFile& file : files) file.commit();
+  return ExitCode::kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(kDescription, "cmap_compare");
+  app.footer(kExample);
+  Arguments arguments;
+  add_options(app, arguments);
+  return cmap::run_program(app, argc, argv, [&] { return run(arguments); });
+}

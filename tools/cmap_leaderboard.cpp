@@ -1,0 +1,85 @@
+// cmap_leaderboard MANIFEST: methods x sequences, every table and picture.
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <optional>
+
+#include "cmap/core/parallel.hpp"
+#include "cmap/core/progress.hpp"
+#include "cmap/report/leaderboard.hpp"
+#include "files.hpp"
+#include "program.hpp"
+
+namespace {
+
+using cmap::ExitCode;
+
+constexpr const char* kDescription =
+    "Evaluates the maps of several methods on several sequences and writes the tables of a paper: tables.md, "
+    "tables.csv,\n"
+    "tables.tex and index.html with pictures, and the report of every map below pairs/. What is done already is kept: "
+    "a\n"
+    "run that was stopped goes on where it was. Maps that fail are marked x and stop nothing; missing ones are -.";
+
+constexpr const char* kExample =
+    "Example:\n"
+    "  cmap_leaderboard benchmarks/leaderboard/samples.json --data-root data_samples -o leaderboard\n"
+    "\n"
+    "The manifest is JSON, comments allowed; paths are below the data root:\n"
+    "  {\"version\": 1,\n"
+    "   \"parameters\": {\"lcr-radius\": 0.5},\n"
+    "   \"sequences\": [{\"name\": \"town\", \"reference\": \"town/reference.ply\"}],\n"
+    "   \"methods\": [{\"name\": \"Ours\", \"maps\": {\"town\": \"town/estimate.ply\"}, \"failed\": []}],\n"
+    "   \"published\": \"paper.json\"}\n"
+    "\n"
+    "Exit codes: 0 every pair is done, missing or failed as marked; 2 wrong usage or manifest, or an output that "
+    "cannot be\n"
+    "written; 3 no data root; 70 internal error.";
+
+struct Arguments {
+  std::string manifest, data_root = ".", output;
+  cmap::CommonArguments common;
+};
+
+void add_options(CLI::App& app, Arguments& a) {
+  app.add_option("MANIFEST", a.manifest, "sequences, methods and their maps")->required()->type_name("FILE.json");
+  app.add_option("--data-root", a.data_root, "folder that the manifest's paths start from [.]")->type_name("DIR");
+  app.add_option("-o,--output", a.output, "folder to write to; its results are used again")
+      ->required()
+      ->type_name("DIR");
+  cmap::add_common_options(app, a.common, "no tables, no progress");
+  cmap::refuse_empty(app, {"--data-root", "--output"});
+}
+
+ExitCode run(const Arguments& arguments) {
+  const cmap::ThreadLimit limit(arguments.common.threads);
+  const cmap::LeaderboardManifest manifest = cmap::read_manifest(arguments.manifest);
+  cmap::LeaderboardRun leaderboard{arguments.data_root, arguments.output, [](const std::string&) {}, {}};
+  std::optional<cmap::ProgressBar> bar;  // of the pair at hand
+  if (!arguments.common.quiet) {
+    leaderboard.log = [&](const std::string& line) {
+      bar.reset();
+      fmt::print(stderr, "{}\n", line);
+    };
+    leaderboard.progress = [&](std::string_view stage, double done) {
+      if (!bar) bar.emplace(true);
+      bar->update(stage, done);
+    };
+  }
+  const std::vector<cmap::LeaderboardPair> pairs = cmap::evaluate_leaderboard(manifest, leaderboard);
+  const cmap::LeaderboardDocuments documents = cmap::typeset_leaderboard(manifest, pairs);
+  cmap::write_documents(documents, arguments.output);
+  if (!arguments.common.quiet) cmap::print(documents.text);
+  return ExitCode::kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(kDescription, "cmap_leaderboard");
+  app.footer(kExample);
+  Arguments arguments;
+  add_options(app, arguments);
+  return cmap::run_program(app, argc, argv, [&] { return run(arguments); });
+}
