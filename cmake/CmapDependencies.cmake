@@ -34,7 +34,7 @@ endforeach()
 # PCL, a peer in the benchmarks, uses more of VTK than figures do: whoever comes first decides in which folder VTK's
 # targets live, and all of them must live here.
 if(CMAP_BUILD_BENCHMARKS)
-  find_package(PCL QUIET COMPONENTS kdtree io)
+  find_package(PCL QUIET COMPONENTS kdtree io registration filters)
 endif()
 
 # Figures: optional. VTK's OpenGL and windows are for module gl alone.

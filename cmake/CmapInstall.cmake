@@ -1,4 +1,4 @@
-# The installed package: find_package(cmap) gives cmap::core, io, spatial, metrics, eval and report.
+# The installed package: find_package(cmap) gives cmap::core, io, spatial, metrics, align, eval and report.
 include(CMakePackageConfigHelpers)
 
 set(CMAP_INSTALL_CMAKEDIR ${CMAKE_INSTALL_LIBDIR}/cmake/cmap)
