@@ -40,6 +40,7 @@ double size_of(const PointCloud& cloud) {
 struct FeatureCloud {
   FeatureCloud(const PointCloud& cloud, double voxel_m)
       : thinned(thinned_to(cloud, voxel_m)), target(thinned, kNormalNeighbors) {
+    target.surface.fit_all();
     const PointBlocks& points = target.index.points;
     std::vector<Eigen::Vector3f> positions;
     for (std::size_t slot = 0; slot < points.size; ++slot) positions.push_back(points.offset(slot));
@@ -62,9 +63,9 @@ struct FeatureCloud {
     const Eigen::Vector3d eye = spread.mean_p + height_m * up;
     std::vector<Eigen::Vector3f> normals;
     for (std::size_t slot = 0; slot < target.index.points.size; ++slot) {
-      const Eigen::Vector3f& normal = target.surface.normals[slot];
-      const double side = (eye - target.index.points.offset(slot).cast<double>()).dot(normal.cast<double>());
-      normals.push_back(side < 0.0 ? Eigen::Vector3f(-normal) : normal);
+      const Eigen::Vector3d normal = target.surface.normal(slot);
+      const double side = (eye - target.index.points.offset(slot).cast<double>()).dot(normal);
+      normals.push_back((side < 0.0 ? -1.0f : 1.0f) * normal.cast<float>());
     }
     return normals;
   }

@@ -34,12 +34,14 @@ class Level {
         source_(thinned_to(source, level.voxel_m / scale)),
         target_(thinned_target(target, level.voxel_m), static_cast<std::size_t>(options.neighbors)) {
     if (options.metric == IcpMetric::kGicp) {
-      source_normals_ = surface_of(Bvh(source_.points()), static_cast<std::size_t>(options.neighbors)).normals;
+      source_index_.emplace(source_.points());
+      source_surface_.emplace(*source_index_, static_cast<std::size_t>(options.neighbors));
+      source_surface_->fit_all();
     }
   }
 
   MovingSource& source() { return source_; }
-  const RegistrationTarget& target() const { return target_; }
+  RegistrationTarget& target() { return target_; }
 
   /// Iterates from a local transform; returns the last one.
   Similarity run(Similarity local, Alignment& result) {
@@ -48,6 +50,7 @@ class Level {
     result.converged = false;
     for (int i = 0; i < level_.max_iterations && !result.converged; ++i) {
       field_ = source_.nearest(target_.index, local);
+      if (options_.metric != IcpMetric::kPoint) target_.fit_surface(field_, level_.max_distance_m);
       const Similarity next = options_.metric == IcpMetric::kPoint ? closed_form_step(local) : gauss_newton_step(local);
       result.converged = limits.hold(local, next, source_.center());
       local = next;
@@ -69,7 +72,7 @@ class Level {
     const double distance_m = std::sqrt(field_.sq_dist[slot]);
     if (distance_m > level_.max_distance_m) return m;
     const double residual_m = options_.metric == IcpMetric::kPlane
-                                  ? std::abs((m.p - m.q).dot(target_.surface.normals[m.target_slot].cast<double>()))
+                                  ? std::abs((m.p - m.q).dot(target_.surface.normal(m.target_slot)))
                                   : distance_m;
     m.weight = robust_weight(options_.kernel, residual_m, options_.kernel_width * level_.max_distance_m);
     return m;
@@ -100,12 +103,12 @@ class Level {
   void add(const Similarity& local, std::size_t slot, const Eigen::Vector3d& pivot, NormalEquations& part) const {
     const Match m = match(local, slot);
     if (m.weight == 0.0) return;
-    const Eigen::Vector3d normal = target_.surface.normals[m.target_slot].cast<double>();
+    const Eigen::Vector3d normal = target_.surface.normal(m.target_slot);
     if (options_.metric == IcpMetric::kPlane) {
       part.add_plane(m.p - pivot, m.p - m.q, normal, m.weight);
       return;
     }
-    const Eigen::Vector3d source_normal = local.rotation * source_normals_[slot].cast<double>();
+    const Eigen::Vector3d source_normal = local.rotation * source_surface_->normal(slot);
     const Eigen::Matrix3d covariance =
         2.0 * Eigen::Matrix3d::Identity() -
         (1.0 - kPlaneThickness) * (normal * normal.transpose() + source_normal * source_normal.transpose());
@@ -116,7 +119,8 @@ class Level {
   const IcpOptions& options_;
   MovingSource source_;
   RegistrationTarget target_;
-  Array<Eigen::Vector3f> source_normals_;  ///< by slot of the source; GICP only
+  std::optional<Bvh> source_index_;        ///< GICP only
+  std::optional<Surface> source_surface_;  ///< GICP only
   NearestField field_;
 };
 

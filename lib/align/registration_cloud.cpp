@@ -43,9 +43,18 @@ void fail_no_overlap(std::size_t n_matches, double max_distance_m) {
                   n_matches, max_distance_m));
 }
 
-void assess(MovingSource& source, const RegistrationTarget& target, const Similarity& local, double max_distance_m,
+void RegistrationTarget::fit_surface(const NearestField& field, double max_distance_m) {
+  Array<std::uint32_t> matched;
+  for (std::size_t i = 0; i < field.slot.size(); ++i) {
+    if (field.sq_dist[i] <= max_distance_m * max_distance_m) matched.push_back(field.slot[i]);
+  }
+  surface.fit(matched);
+}
+
+void assess(MovingSource& source, RegistrationTarget& target, const Similarity& local, double max_distance_m,
             bool with_scale, Alignment& result) {
   const NearestField field = source.nearest(target.index, local);
+  target.fit_surface(field, max_distance_m);
   const double sq_max = max_distance_m * max_distance_m;
   const auto pair_at = [&](std::size_t slot) {
     return WeightedPair{MovingSource::moved(local, source.points(), slot),
@@ -58,12 +67,12 @@ void assess(MovingSource& source, const RegistrationTarget& target, const Simila
     NormalEquations part;
     for (std::size_t slot = b; slot < e; ++slot) {
       if (!(field.sq_dist[slot] <= sq_max)) continue;
-      const Eigen::Vector3d normal = target.surface.normals[field.slot[slot]].cast<double>();
+      const Eigen::Vector3d normal = target.surface.normal(field.slot[slot]);
       const Eigen::Vector3d arm = pair_at(slot).p - moments.mean_p;
       part.add_plane(arm, Eigen::Vector3d::Zero(), normal, 1.0);
       // Without what noise of the normals alone adds: a noisy plane must not seem to hold itself in place.
       const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - normal * normal.transpose();
-      const double noise = kNoiseMargin * static_cast<double>(target.surface.tilt_variance[field.slot[slot]]);
+      const double noise = kNoiseMargin * target.surface.tilt_variance(field.slot[slot]);
       part.add(arm, Eigen::Vector3d::Zero(), across, -noise);
     }
     return part;

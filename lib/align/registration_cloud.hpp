@@ -17,14 +17,20 @@ inline PointCloud thinned_target(const PointCloud& cloud, double voxel_m) { retu
 /// A target with its surface.
 struct RegistrationTarget {
   RegistrationTarget(const PointCloud& cloud, std::size_t neighbors)
-      : index(sort_points(cloud)), surface(surface_of(index, neighbors)) {}
+      : index(sort_points(cloud)), surface(index, neighbors) {}
+  RegistrationTarget(const RegistrationTarget&) = delete;
+  RegistrationTarget& operator=(const RegistrationTarget&) = delete;
+
+  /// Fits the surface at the matches.
+  void fit_surface(const NearestField& field, double max_distance_m);
+
   Bvh index;
   Surface surface;
 };
 
 /// Fills overlap, RMSE, counts, condition and weakest direction for the source at `local`. Throws UnsupportedError
 /// where fewer than 3 points match, or where the surface leaves a direction free.
-void assess(MovingSource& source, const RegistrationTarget& target, const Similarity& local, double max_distance_m,
+void assess(MovingSource& source, RegistrationTarget& target, const Similarity& local, double max_distance_m,
             bool with_scale, Alignment& result);
 
 /// Throws the UnsupportedError of clouds that do not meet.

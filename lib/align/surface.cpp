@@ -1,6 +1,8 @@
 #include "align/surface.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <numeric>
 
 #include "cmap/core/parallel.hpp"
 #include "cmap/spatial/k_nearest.hpp"
@@ -36,19 +38,54 @@ LocalPlane plane_through(const PointBlocks& points, const std::uint32_t* neighbo
           static_cast<float>(spread[0] / (spread[1] * static_cast<double>(n)))};
 }
 
+/// These slots of a cloud as queries, in this order.
+PointBlocks chosen_points(const PointBlocks& points, const Array<std::uint32_t>& slots) {
+  PointBlocks chosen;
+  chosen.origin = points.origin;
+  chosen.size = slots.size();
+  chosen.blocks.resize((slots.size() + kBlockSize - 1) / kBlockSize);
+  for (std::size_t i = 0; i < chosen.blocks.size() * kBlockSize; ++i) {
+    const Eigen::Vector3f p = points.offset(slots[std::min(i, slots.size() - 1)]);
+    PointBlock& block = chosen.blocks[i / kBlockSize];
+    block.x[i % kBlockSize] = p.x();
+    block.y[i % kBlockSize] = p.y();
+    block.z[i % kBlockSize] = p.z();
+  }
+  return chosen;
+}
+
 }  // namespace
 
-Surface surface_of(const Bvh& cloud, std::size_t k) {
-  const Array<std::uint32_t> neighbors = find_k_nearest(cloud, cloud.points, k);
-  Surface surface{Array<Eigen::Vector3f>(cloud.points.size), Array<float>(cloud.points.size)};
-  parallel_chunks(cloud.points.size, kPointChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t slot = begin; slot < end; ++slot) {
-      const LocalPlane plane = plane_through(cloud.points, &neighbors[slot * k], k);
-      surface.normals[slot] = plane.normal;
-      surface.tilt_variance[slot] = plane.tilt_variance;
+Surface::Surface(const Bvh& cloud, std::size_t k)
+    : cloud_(cloud),
+      k_(k),
+      normals_(cloud.points.size),
+      tilt_variance_(cloud.points.size),
+      is_known_(cloud.points.size, std::uint8_t{0}) {}
+
+void Surface::fit(const Array<std::uint32_t>& slots) {
+  Array<std::uint32_t> missing;
+  for (const std::uint32_t slot : slots) {
+    if (is_known_[slot]) continue;
+    is_known_[slot] = 1;
+    missing.push_back(slot);
+  }
+  if (missing.empty()) return;
+  std::sort(missing.begin(), missing.end());  // neighbors in a row are found faster
+  const Array<std::uint32_t> neighbors = find_k_nearest(cloud_, chosen_points(cloud_.points, missing), k_);
+  parallel_chunks(missing.size(), kPointChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const LocalPlane plane = plane_through(cloud_.points, &neighbors[i * k_], k_);
+      normals_[missing[i]] = plane.normal;
+      tilt_variance_[missing[i]] = plane.tilt_variance;
     }
   });
-  return surface;
+}
+
+void Surface::fit_all() {
+  Array<std::uint32_t> all(cloud_.points.size);
+  std::iota(all.begin(), all.end(), 0u);
+  fit(all);
 }
 
 }  // namespace cmap

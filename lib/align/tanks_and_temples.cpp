@@ -117,7 +117,7 @@ TanksAndTemplesResult tanks_and_temples(const PointCloud& source, const PointClo
   if (options.refine) {
     // How well the geometry holds the result, with the matches that count.
     MovingSource moving(thinned_to(cropped(transformed(source, T.matrix()), options, "source"), tau_m / 2.0));
-    const RegistrationTarget surface(thinned_to(cropped(target, options, "target"), tau_m / 2.0), 10);
+    RegistrationTarget surface(thinned_to(cropped(target, options, "target"), tau_m / 2.0), 10);
     assess(moving, surface, local_transform({}, moving.points().origin, surface.index.points.origin), tau_m, true,
            alignment);
   }
