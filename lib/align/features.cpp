@@ -1,14 +1,11 @@
 #include "align/features.hpp"
 
-#include <dlfcn.h>
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
+#include "core/loaded_module.hpp"
 
 namespace cmap {
 namespace {
@@ -17,13 +14,9 @@ using FpfhFunction = void (*)(const float* xyz, const float* normals, std::size_
                               float* histograms);
 
 FpfhFunction load_fpfh() {
-  // Found by the program's run path; never unloaded, as PCL's libraries do not expect that.
-  void* library = ::dlopen("libcmap_fpfh.so", RTLD_NOW | RTLD_LOCAL);
-  if (library == nullptr) {
-    throw UnsupportedError(fmt::format("no global registration in this build (it needs PCL): {}", ::dlerror()));
-  }
-  auto function = reinterpret_cast<FpfhFunction>(::dlsym(library, "cmap_fpfh"));
-  if (function == nullptr) throw UnsupportedError(fmt::format("global registration: {}", ::dlerror()));
+  FpfhFunction function = nullptr;
+  LoadedModule("libcmap_fpfh.so", "this build has no global registration (apt-get install libpcl-dev, build again)")
+      .find("cmap_fpfh", function);
   return function;
 }
 

@@ -82,7 +82,7 @@ TEST(Report, SaysThatNothingWasAligned) {
       report_of(kReference, kEstimate).at("alignment"),
       parsed(
           R"({"method": "none", "T_ref_est": [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]],
-                       "scale": 1.0, "before": null, "overlap": 1.0, "rmse_m": 0.5})"));
+                       "scale": 1.0, "scale_error": 0.0, "before": null, "overlap": 1.0, "rmse_m": 0.5, "registration": null})"));
 }
 
 TEST(Report, HoldsTheTransformThatWasGiven) {
