@@ -11,7 +11,7 @@ import unittest
 import xml.etree.ElementTree as xml
 from pathlib import Path
 
-from cmap_eval_testing import DONE, INPUT, PROGRAM, SOURCE, USAGE, CmapEval
+from cmap_eval_testing import DONE, INPUT, PROGRAM, SOURCE, USAGE, CmapEval, ply
 from latex_check import check_latex
 
 COMPARE = Path(os.environ["CMAP_COMPARE"]).resolve()
@@ -51,6 +51,20 @@ class Compare(CmapEval):
             self.assertIn(part, message)
         self.assertEqual(result.stdout, b"")
         self.assertEqual(os.listdir(self.outputs), [])
+
+    def test_intervals_of_differences(self):
+        """Planes 0.125 and 0.25 m above the reference: every block is worse by 2 x 0.125 m Chamfer, without doubt."""
+        plane = [(x, y) for x in range(40) for y in range(40)]
+        maps = {z: self.input(f"{z}.ply", ply([(x, y, z) for x, y in plane])) for z in (0, 0.125, 0.25)}
+        blocks = ("--metrics", "chamfer,hausdorff", "--bootstrap", "100", "--block", "5")
+        near, far = (self.report(f"at_{z}.json", maps[0], maps[z], *blocks) for z in (0.125, 0.25))
+        table = self.compare(near, far, "--baseline", near)
+        self.assertIn("95 % intervals of these differences", table)
+        intervals = table[table.index("95 % intervals") :]
+        self.assertRegex(intervals, r"Chamfer distance +CD# +↓ +m +-0.2500 to -0.2500")
+        self.assertRegex(intervals, r"Hausdorff distance +↓ +m +-\n")
+        without = self.report("without.json", maps[0], maps[0.25], "--metrics", "chamfer")
+        self.assertNotIn("intervals of these", self.compare(near, without, "--baseline", near))
 
     def test_text(self):
         """The two-points pair by hand: chamfer 4.375, overlap 0.5; the reference against itself 0 and 1."""

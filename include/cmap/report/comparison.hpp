@@ -43,8 +43,9 @@ struct ComparisonOptions {
 enum class ComparisonFormat { kText, kMarkdown, kCsv, kLatex, kHtml };
 
 /// Rows are metrics, columns reports; best and second best of each row are marked. With a baseline a second table says
-/// by how much each report is better (+) or worse (-) than it. The reports must be comparable.
-/// Throws UsageError for an unknown metric, or where none is left.
+/// by how much each report is better (+) or worse (-) than it, and, where all reports have bootstrap blocks of one
+/// size, a third the intervals of these differences. The reports must be comparable. Throws UsageError for an unknown
+/// metric, or where none is left.
 std::string format_comparison(const std::vector<SavedReport>& reports, const ComparisonOptions& options,
                               ComparisonFormat format);
 

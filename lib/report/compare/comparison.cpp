@@ -8,6 +8,7 @@
 #include <map>
 
 #include "report/compare/comparison_scores.hpp"
+#include "report/compare/gain_intervals.hpp"
 #include "report/compare/html_tables.hpp"
 #include "report/compare/score_table.hpp"
 #include "report/table_text.hpp"
@@ -152,7 +153,10 @@ std::string format_comparison(const std::vector<SavedReport>& reports, const Com
   const ComparisonScores comparison = scores_to_compare(reports, options);
   if (format == ComparisonFormat::kCsv) return csv(comparison, options.baseline);
   std::vector<ScoreTable> tables{score_table(comparison)};
-  if (options.baseline && reports.size() > 1) tables.push_back(gain_table(comparison, *options.baseline));
+  if (options.baseline && reports.size() > 1) {
+    tables.push_back(gain_table(comparison, *options.baseline));
+    if (auto intervals = gain_interval_table(reports, comparison, *options.baseline)) tables.push_back(*intervals);
+  }
   tables.front().notes = notes_on(reports, format);
   switch (format) {
     case ComparisonFormat::kMarkdown:
