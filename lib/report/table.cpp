@@ -140,7 +140,7 @@ std::string format_table(const Json& report) {
     for (const auto& [tool, record] : report.at("aliases").items())
       table += fmt::format("\nas {}\n{}", tool, alias_lines("", record));
   }
-  table += sensitivity_lines(report) + interval_lines(report) + unobserved_lines(report);
+  table += alignment_lines(report) + sensitivity_lines(report) + interval_lines(report) + unobserved_lines(report);
   const Json& warnings = report.at("warnings");
   if (!warnings.empty()) table += "\nwarnings\n";
   for (const Json& warning : warnings) {

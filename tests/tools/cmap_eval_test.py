@@ -58,6 +58,8 @@ class Results(CmapEval):
         self.assertLess(report["metrics"]["chamfer"]["value"], 1e-4)
         self.assertTrue(alignment["registration"]["converged"])
         self.assertLess(abs(alignment["scale_error"]), 1e-12, "a rigid method")
+        result = self.run_program(town, copy, "--align", "gicp", "--initial", moved, "--metrics", "chamfer")
+        self.assertRegex(result.stdout.decode(), r"before the alignment by gicp .*\n  Chamfer distance +CD# +0\.\d+ m\n")
         # The town's own times: a circle, and the same circle seen from elsewhere.
         poses = [(0.1 * i, 5 * np.cos(0.1 * i), 5 * np.sin(0.1 * i), 0.1 * i % 1) for i in range(60)]
         tum = [self.input(f"{n}.tum", "".join(f"{t} {x + n} {y} {z} 0 0 0 1\n" for t, x, y, z in poses)) for n in (0, 2)]
