@@ -169,7 +169,8 @@ class Leaderboard(CmapEval):
             process.kill()
             n_killed += process.wait() != 0
             self.check_partial(killed)
-        self.assertGreater(n_killed, 2, "some runs were killed while they worked")
+        # On a machine that is suddenly free, later runs, which go on where others were killed, end before their time.
+        self.assertGreater(n_killed, 0, "some run was killed while it worked")
         self.run_board(killed)
         self.assertEqual(files_below(killed), expected, "the same files with the same bytes")
         shutil.rmtree(killed / "pairs/hill")
