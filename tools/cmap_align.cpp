@@ -88,11 +88,8 @@ struct Result {
 };
 
 Result align_trajectories(const Arguments& a) {
-  const auto fit = a.fit == "first-frame" ? cmap::TrajectoryFit::kFirstFrame
-                   : a.fit == "se3"       ? cmap::TrajectoryFit::kSe3
-                                          : cmap::TrajectoryFit::kSim3;
   const cmap::Trajectory source = cmap::read_tum_trajectory(a.source), target = cmap::read_tum_trajectory(a.target);
-  Result result{cmap::align_trajectories(source, target, fit, a.max_gap_s), {}, {}};
+  Result result{cmap::align_trajectories(source, target, cmap::trajectory_fit_from_name(a.fit), a.max_gap_s), {}, {}};
   result.json = cmap::alignment_json(result.alignment);
   return result;
 }
@@ -126,14 +123,6 @@ Result align_maps(const Arguments& a) {
   return result;
 }
 
-std::string matrix_text(const Eigen::Matrix4d& T) {
-  std::string text;
-  for (int row = 0; row < 4; ++row) {
-    text += fmt::format("{:.17g} {:.17g} {:.17g} {:.17g}\n", T(row, 0), T(row, 1), T(row, 2), T(row, 3));
-  }
-  return text;
-}
-
 std::string table(const Result& result) {
   const cmap::Alignment& a = result.alignment;
   std::string text = fmt::format("method      {}\nscale       {:.8g}\n", a.method, a.scale);
@@ -146,36 +135,25 @@ std::string table(const Result& result) {
   return text + result.scores;
 }
 
-/// Everything is written, or nothing.
-void write_outputs(const Arguments& a, const Result& result) {
-  std::optional<cmap::OutputFile> matrix, json;
-  if (!a.output.empty()) {
-    matrix.emplace(a.output);
-    matrix->write(matrix_text(result.alignment.T_dst_src));
-    matrix->finish();
+/// Prints and writes everything, or writes nothing.
+void deliver(const Arguments& a, const Result& result) {
+  const std::string matrix = cmap::transform_text(result.alignment.T_dst_src);
+  cmap::OutputFiles files;
+  files.add(a.output, [&](cmap::OutputFile& file) { file.write(matrix); });
+  files.add(a.json, [&](cmap::OutputFile& file) { file.write(result.json.dump(2) + "\n"); });
+  if (!a.common.quiet) {
+    cmap::print(table(result) + (a.output.empty() ? "T_dst_src\n" + matrix : ""));
+    for (const std::string& warning : result.alignment.warnings) fmt::print(stderr, "warning: {}\n", warning);
   }
-  if (!a.json.empty()) {
-    json.emplace(a.json);
-    json->write(result.json.dump(2) + "\n");
-    json->finish();
-  }
-  if (matrix) matrix->commit();
-  if (json) json->commit();
+  files.commit();
 }
 
 cmap::ExitCode run(const CLI::App& app, const Arguments& a) {
   const cmap::ThreadLimit limit(a.common.threads);
   refuse_unused(app, a.method);
   cmap::refuse_overwriting({a.source, a.target, a.initial}, {a.output, a.json});
-  for (const std::string& output : {a.output, a.json}) {
-    if (!output.empty()) cmap::require_writable(output);
-  }
-  const Result result = a.method == "trajectory" ? align_trajectories(a) : align_maps(a);
-  write_outputs(a, result);
-  if (a.common.quiet) return cmap::ExitCode::kDone;
-  fmt::print("{}", table(result));
-  if (a.output.empty()) fmt::print("T_dst_src\n{}", matrix_text(result.alignment.T_dst_src));
-  for (const std::string& warning : result.alignment.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  for (const std::string& output : {a.output, a.json}) cmap::require_writable(output);
+  deliver(a, a.method == "trajectory" ? align_trajectories(a) : align_maps(a));
   return cmap::ExitCode::kDone;
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <list>
 #include <map>
 
 #include "cmap/core/error.hpp"
@@ -84,27 +83,19 @@ ExitCode run(Arguments arguments) {
   cmap::ComparisonOptions options{arguments.metrics, std::nullopt};
   if (!arguments.baseline.empty()) options.baseline = place_baseline(arguments.baseline, arguments.reports);
   cmap::refuse_overwriting(arguments.reports, {arguments.output, arguments.figure});
-  for (const std::string& output : {arguments.output, arguments.figure}) {
-    if (!output.empty()) cmap::require_writable(output);
-  }
+  for (const std::string& output : {arguments.output, arguments.figure}) cmap::require_writable(output);
   if (!arguments.figure.empty()) cmap::check_figure_name(arguments.figure);
   std::vector<cmap::SavedReport> reports;
   for (const std::string& path : arguments.reports) reports.push_back(cmap::read_report(path));
   cmap::name_reports(reports, arguments.names);
   cmap::require_comparable(reports);
   const std::string text = cmap::format_comparison(reports, options, kFormats.at(arguments.format));
-  std::list<cmap::OutputFile> files;
-  if (!arguments.figure.empty()) {
-    cmap::write_comparison_figure(reports, options, arguments.figure, files.emplace_back(arguments.figure));
-    files.back().finish();
-  }
-  if (!arguments.output.empty()) {
-    files.emplace_back(arguments.output).write(text);
-    files.back().finish();
-  } else {
-    cmap::print(text);
-  }
-  for (cmap::OutputFile& file : files) file.commit();
+  cmap::OutputFiles files;
+  files.add(arguments.figure,
+            [&](cmap::OutputFile& file) { cmap::write_comparison_figure(reports, options, arguments.figure, file); });
+  files.add(arguments.output, [&](cmap::OutputFile& file) { file.write(text); });
+  if (arguments.output.empty()) cmap::print(text);
+  files.commit();
   return ExitCode::kDone;
 }
 

@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <list>
 #include <optional>
 
 #include "cmap/core/parallel.hpp"
@@ -42,7 +41,7 @@ constexpr const char* kExample =
 struct Arguments {
   std::string reference, estimate;
   std::string output, html, figure, format = "table", config, preset, transform, initial;
-  std::string reference_trajectory, estimate_trajectory;
+  std::string reference_trajectory, estimate_trajectory, sensor;
   std::string estimate_errors, reference_errors;
   std::vector<std::string> requirements;
   cmap::EvaluationArguments evaluation;
@@ -74,6 +73,9 @@ void add_options(CLI::App& app, Arguments& a) {
       ->type_name("FILE");
   app.add_option("--est-trajectory", a.estimate_trajectory, "TUM file of the estimate's poses, at the same times")
       ->type_name("FILE");
+  app.add_option("--observed-from", a.sensor,
+                 "where the estimate's sensor was: TUM file in the estimate's frame; means --observed sensor")
+      ->type_name("FILE");
   app.add_option("--require", a.requirements, "exit 1 unless it holds: LCR>=0.2, accuracy@0.1<=0.06; repeatable")
       ->type_name("EXPR")
       ->expected(1)
@@ -83,8 +85,9 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("--export-reference-errors", a.reference_errors, "the same for the reference, with LCR hits")
       ->type_name("FILE.ply");
   cmap::add_common_options(app, a.common, "no table, no progress");
-  cmap::refuse_empty(app, {"--output", "--html", "--figure", "--config", "--preset", "--transform", "--initial",
-                           "--ref-trajectory", "--est-trajectory", "--export-errors", "--export-reference-errors"});
+  cmap::refuse_empty(
+      app, {"--output", "--html", "--figure", "--config", "--preset", "--transform", "--initial", "--ref-trajectory",
+            "--est-trajectory", "--observed-from", "--export-errors", "--export-reference-errors"});
   a.evaluation.add_to(app, [](std::string_view) { return true; });
 }
 
@@ -94,6 +97,10 @@ cmap::EvaluationOptions resolve_options(const Arguments& arguments) {
   if (!arguments.config.empty()) cmap::apply_config_file(options, arguments.config);
   arguments.evaluation.apply_to(options);
   if (!arguments.html.empty()) options.lcr_curve = true;
+  if (!arguments.sensor.empty()) options.observed = cmap::Observed::kSensor;
+  if (arguments.sensor.empty() && options.observed == cmap::Observed::kSensor) {
+    throw cmap::UsageError("--observed sensor needs --observed-from");
+  }
   return options;
 }
 
@@ -112,6 +119,11 @@ cmap::ProtocolInputs protocol_inputs(const Arguments& a, const cmap::EvaluationO
   if (by_trajectories) {
     inputs.reference_trajectory = cmap::read_tum_trajectory(a.reference_trajectory);
     inputs.estimate_trajectory = cmap::read_tum_trajectory(a.estimate_trajectory);
+  }
+  if (!a.sensor.empty()) {
+    for (const cmap::StampedPose& pose : cmap::read_tum_trajectory(a.sensor)) {
+      inputs.sensor_positions.push_back(pose.position);
+    }
   }
   return inputs;
 }
@@ -139,9 +151,7 @@ void check_extension(const std::string& output, const std::vector<std::string>& 
 
 /// Outputs that cannot be written, or not in their format, are refused before the work.
 void check_outputs(const Arguments& a) {
-  for (const std::string& output : a.outputs()) {
-    if (!output.empty()) cmap::require_writable(output);
-  }
+  for (const std::string& output : a.outputs()) cmap::require_writable(output);
   check_extension(a.html, {".html", ".htm", ".HTML", ".HTM"}, "the page is HTML");
   for (const std::string& ply : {a.estimate_errors, a.reference_errors}) {
     check_extension(ply, {".ply", ".PLY"}, "point errors are written as PLY");
@@ -152,19 +162,15 @@ void check_outputs(const Arguments& a) {
 void deliver(const Arguments& arguments, const cmap::Evaluation& evaluation, const nlohmann::ordered_json& report,
              const std::optional<cmap::FigureModule>& figures) {
   const std::string report_text = report.dump(2) + "\n";
-  std::list<cmap::OutputFile> files;
-  const auto write = [&](const std::string& path, auto&& write_to) {
-    if (path.empty()) return;
-    write_to(files.emplace_back(path));
-    files.back().finish();
-  };
-  write(arguments.estimate_errors, [&](cmap::OutputFile& file) { cmap::write_estimate_errors(evaluation, file); });
-  write(arguments.reference_errors, [&](cmap::OutputFile& file) { cmap::write_reference_errors(evaluation, file); });
-  write(arguments.html, [&](cmap::OutputFile& file) { cmap::write_html_report(report, evaluation, file); });
-  write(arguments.figure, [&](cmap::OutputFile& file) { figures->write(evaluation, arguments.figure, file); });
-  write(arguments.output, [&](cmap::OutputFile& file) { file.write(report_text); });
+  cmap::OutputFiles files;
+  files.add(arguments.estimate_errors, [&](cmap::OutputFile& file) { cmap::write_estimate_errors(evaluation, file); });
+  files.add(arguments.reference_errors,
+            [&](cmap::OutputFile& file) { cmap::write_reference_errors(evaluation, file); });
+  files.add(arguments.html, [&](cmap::OutputFile& file) { cmap::write_html_report(report, evaluation, file); });
+  files.add(arguments.figure, [&](cmap::OutputFile& file) { figures->write(evaluation, arguments.figure, file); });
+  files.add(arguments.output, [&](cmap::OutputFile& file) { file.write(report_text); });
   if (!arguments.common.quiet) cmap::print(arguments.format == "json" ? report_text : cmap::format_table(report));
-  for (cmap::OutputFile& file : files) file.commit();
+  files.commit();
 }
 
 ExitCode run(const Arguments& arguments, const std::string& command) {
@@ -177,9 +183,10 @@ ExitCode run(const Arguments& arguments, const std::string& command) {
                            {},
                            cmap::thread_count(),
                            std::string(cmap::simd_level_name(cmap::simd_level()))};
-  cmap::refuse_overwriting({arguments.reference, arguments.estimate, arguments.config, arguments.transform,
-                            arguments.initial, arguments.reference_trajectory, arguments.estimate_trajectory},
-                           arguments.outputs());
+  cmap::refuse_overwriting(
+      {arguments.reference, arguments.estimate, arguments.config, arguments.transform, arguments.initial,
+       arguments.reference_trajectory, arguments.estimate_trajectory, arguments.sensor},
+      arguments.outputs());
   check_outputs(arguments);
   std::optional<cmap::FigureModule> figures;
   if (!arguments.figure.empty()) figures.emplace().check_name(arguments.figure);

@@ -47,20 +47,9 @@ class EvaluationArguments {
       return;
     }
     std::string help = spec.help;
-    if (const std::string value = default_text(spec); !value.empty()) help += fmt::format(" [{}]", value);
+    const std::string value = command_line_text(spec.get(EvaluationOptions{}));
+    if (!value.empty()) help += fmt::format(" [{}]", value);
     options_[&spec] = app.add_option(flag, text, help)->type_name(spec.placeholder)->group("Metrics");
-  }
-
-  /// An option's default as one would type it; empty where it has none.
-  static std::string default_text(const OptionSpec& spec) {
-    const auto value = spec.get(EvaluationOptions{});
-    if (value.is_null() || value.empty()) return "";
-    if (value.is_string()) return value.get<std::string>();
-    if (!value.is_array()) return value.dump();
-    std::string text;
-    for (const auto& item : value)
-      text += (text.empty() ? "" : ",") + (item.is_string() ? item.get<std::string>() : item.dump());
-    return text;
   }
 
   std::map<const OptionSpec*, std::string> texts_;

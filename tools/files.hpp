@@ -7,11 +7,9 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "cmap/core/error.hpp"
-#include "cmap/core/parallel.hpp"
 #include "cmap/io/point_cloud_file.hpp"
 #include "cmap/io/transform_file.hpp"
 
@@ -33,15 +31,6 @@ inline void refuse_overwriting(std::vector<std::string> inputs, const std::vecto
     }
     taken.push_back(output);
   }
-}
-
-/// Reads both maps, one on each thread.
-inline std::pair<PointCloudFile, PointCloudFile> read_both(const std::string& reference, const std::string& estimate,
-                                                           const ReadOptions& options = {}) {
-  std::pair<PointCloudFile, PointCloudFile> files;
-  parallel_tasks({[&] { files.first = read_point_cloud(reference, options); },
-                  [&] { files.second = read_point_cloud(estimate, options); }});
-  return files;
 }
 
 /// The identity where no file was given.

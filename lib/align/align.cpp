@@ -12,6 +12,7 @@
 #include "cmap/align/icp.hpp"
 #include "cmap/align/sim3_icp.hpp"
 #include "cmap/core/error.hpp"
+#include "cmap/io/transform_file.hpp"
 #include "cmap/spatial/k_nearest.hpp"
 
 namespace cmap {
@@ -152,11 +153,7 @@ Alignment align(const PointCloud& source, const PointCloud& target, AlignMethod 
 }
 
 nlohmann::ordered_json alignment_json(const Alignment& a) {
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (int row = 0; row < 4; ++row) {
-    rows.push_back({a.T_dst_src(row, 0), a.T_dst_src(row, 1), a.T_dst_src(row, 2), a.T_dst_src(row, 3)});
-  }
-  return {{"method", a.method},         {"T_dst_src", rows},
+  return {{"method", a.method},         {"T_dst_src", transform_json(a.T_dst_src)},
           {"scale", a.scale},           {"overlap", a.overlap},
           {"rmse_m", a.rmse_m},         {"n_source", a.n_source},
           {"n_target", a.n_target},     {"n_matches", a.n_matches},

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "align/registration_cloud.hpp"
+#include "align/require.hpp"
 #include "cmap/align/umeyama.hpp"
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
@@ -19,10 +20,6 @@ constexpr std::size_t kPointChunk = 1024;
 constexpr double kPlaneThickness = 1e-3;  ///< variance across a plane over that along it (Segal et al.)
 
 constexpr std::array<const char*, 3> kMethodNames{"icp", "plane", "gicp"};
-
-void require(bool holds, const char* field, double value, const char* rule) {
-  if (!holds) throw UsageError(fmt::format("{} is {:g}: {}", field, value, rule));
-}
 
 /// What an iteration sees: one level's clouds and the matches at the present transform.
 class Level {
@@ -165,7 +162,7 @@ Alignment icp(const PointCloud& source, const PointCloud& target, const Eigen::M
   }
   result.T_dst_src = T.matrix();
   result.scale = T.scale;
-  if (!result.converged) result.warnings.push_back(fmt::format("not converged after {} iterations", result.iterations));
+  tell_convergence(result);
   return result;
 }
 

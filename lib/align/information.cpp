@@ -1,5 +1,7 @@
 #include "align/information.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
@@ -107,6 +109,20 @@ Observability observability(const Matrix7d& H, bool with_scale, double lever_m) 
   result.condition = largest > 0.0 ? std::max(0.0, eigen.eigenvalues()[0]) / largest : 0.0;
   result.weakest = name_weakest(H, eigen, lever_m);
   return result;
+}
+
+void tell_observability(const Observability& found, Alignment& result) {
+  constexpr double kWeak = 1e-3;
+  result.condition = found.condition;
+  result.weakest = found.weakest;
+  if (result.condition < kWeak) {
+    result.warnings.push_back(
+        fmt::format("{} is only weakly determined (condition {:.1e})", found.weakest, found.condition));
+  }
+}
+
+void tell_convergence(Alignment& result) {
+  if (!result.converged) result.warnings.push_back(fmt::format("not converged after {} iterations", result.iterations));
 }
 
 }  // namespace cmap

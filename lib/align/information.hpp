@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <string>
 
+#include "cmap/align/alignment.hpp"
 #include "cmap/align/similarity.hpp"
 
 namespace cmap {
@@ -38,5 +39,11 @@ struct Observability {
   std::string weakest;
 };
 Observability observability(const Matrix7d& H, bool with_scale, double lever_m);
+
+/// Into the result, with a warning where a direction is only weakly determined.
+void tell_observability(const Observability& found, Alignment& result);
+
+/// A warning where the iterations did not settle.
+void tell_convergence(Alignment& result);
 
 }  // namespace cmap

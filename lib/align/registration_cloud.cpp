@@ -21,12 +21,11 @@ constexpr double kNoiseMargin = 2.0;
 
 /// A surface that slides in itself up to normals this noisy (1e-3 rad) determines nothing; up to the second it is weak.
 constexpr double kUndetermined = 1e-6;
-constexpr double kWeak = 1e-3;
 
-void require_observable(const Alignment& result) {
-  if (result.condition > kUndetermined) return;
+void require_observable(const Observability& found) {
+  if (found.condition > kUndetermined) return;
   throw UnsupportedError(
-      fmt::format("the alignment is not determined: {} is free (condition {:.1e})", result.weakest, result.condition));
+      fmt::format("the alignment is not determined: {} is free (condition {:.1e})", found.weakest, found.condition));
 }
 
 }  // namespace
@@ -87,13 +86,8 @@ void assess(MovingSource& source, RegistrationTarget& target, const Similarity& 
   (void)fit_similarity(moments, ScaleModel{with_scale, 1.0, 0.0});  // refuses what has no spread
   const double lever_m = std::sqrt(moments.scatter_p.trace() / moments.weight);
   const Observability found = observability(information.H, with_scale, lever_m);
-  result.condition = found.condition;
-  result.weakest = found.weakest;
-  require_observable(result);
-  if (result.condition < kWeak) {
-    result.warnings.push_back(
-        fmt::format("{} is only weakly determined (condition {:.1e})", found.weakest, found.condition));
-  }
+  require_observable(found);
+  tell_observability(found, result);
 }
 
 bool StepLimits::hold(const Similarity& before, const Similarity& after, const Eigen::Vector3d& center) const {

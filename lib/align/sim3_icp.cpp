@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "align/registration_cloud.hpp"
+#include "align/require.hpp"
 #include "cmap/align/umeyama.hpp"
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
@@ -17,10 +18,6 @@ namespace cmap {
 namespace {
 
 constexpr double kCellVoxels = 5.0;  ///< side of the cells that say where the target has something
-
-void require(bool holds, const char* field, double value, const char* rule) {
-  if (!holds) throw UsageError(fmt::format("{} is {:g}: {}", field, value, rule));
-}
 
 /// first (last / first)^f; zeros stay zero.
 double annealed(double first, double last, double f) {

@@ -38,22 +38,6 @@ LocalPlane plane_through(const PointBlocks& points, const std::uint32_t* neighbo
           static_cast<float>(spread[0] / (spread[1] * static_cast<double>(n)))};
 }
 
-/// These slots of a cloud as queries, in this order.
-PointBlocks chosen_points(const PointBlocks& points, const Array<std::uint32_t>& slots) {
-  PointBlocks chosen;
-  chosen.origin = points.origin;
-  chosen.size = slots.size();
-  chosen.blocks.resize((slots.size() + kBlockSize - 1) / kBlockSize);
-  for (std::size_t i = 0; i < chosen.blocks.size() * kBlockSize; ++i) {
-    const Eigen::Vector3f p = points.offset(slots[std::min(i, slots.size() - 1)]);
-    PointBlock& block = chosen.blocks[i / kBlockSize];
-    block.x[i % kBlockSize] = p.x();
-    block.y[i % kBlockSize] = p.y();
-    block.z[i % kBlockSize] = p.z();
-  }
-  return chosen;
-}
-
 }  // namespace
 
 Surface::Surface(const Bvh& cloud, std::size_t k)

@@ -113,6 +113,7 @@ TanksAndTemplesResult tanks_and_temples(const PointCloud& source, const PointClo
       T = run_stage(source, target, T, stage, options, alignment);
     }
   }
+  tell_convergence(alignment);
   score(source, target, T, options, result);
   if (options.refine) {
     // How well the geometry holds the result, with the matches that count.

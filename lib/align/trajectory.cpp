@@ -14,9 +14,6 @@ namespace {
 
 constexpr std::array<const char*, 3> kMethodNames{"trajectory-first-frame", "trajectory-se3", "trajectory-sim3"};
 
-/// Trajectories this close to a line leave the rotation about it to noise.
-constexpr double kWeak = 1e-3;
-
 Similarity first_frame(const PosePair& pair) {
   Similarity T;
   T.rotation = (pair.target.rotation * pair.source.rotation.conjugate()).toRotationMatrix();
@@ -39,13 +36,7 @@ void add_observability(std::span<const PosePair> pairs, const Similarity& T, boo
                     1.0);
   }
   const double lever_m = T.scale * std::sqrt(moments.scatter_p.trace() / moments.weight);
-  const Observability found = observability(information.H, with_scale, lever_m);
-  result.condition = found.condition;
-  result.weakest = found.weakest;
-  if (result.condition < kWeak) {
-    result.warnings.push_back(
-        fmt::format("{} is only weakly determined (condition {:.1e})", found.weakest, found.condition));
-  }
+  tell_observability(observability(information.H, with_scale, lever_m), result);
 }
 
 void require_common_times(const Trajectory& source, const Trajectory& target, std::size_t n_pairs, double max_gap_s) {
@@ -82,6 +73,13 @@ std::vector<PosePair> pair_in_time(const Trajectory& source, const Trajectory& t
 
 Similarity fit_centers(std::span<const PosePair> pairs, const ScaleModel& model) {
   return fit_similarity(center_moments(pairs), model);
+}
+
+TrajectoryFit trajectory_fit_from_name(std::string_view name) {
+  if (name == "first-frame") return TrajectoryFit::kFirstFrame;
+  if (name == "se3") return TrajectoryFit::kSe3;
+  if (name == "sim3") return TrajectoryFit::kSim3;
+  throw UsageError(fmt::format("{} is no fit of trajectories: first-frame, se3, sim3", name));
 }
 
 Alignment align_trajectories(const Trajectory& source, const Trajectory& target, TrajectoryFit fit, double max_gap_s) {

@@ -85,7 +85,11 @@ const MetricRecord* Evaluation::find(std::string_view id) const {
 }
 
 Evaluation evaluate(PointCloud reference, PointCloud estimate, const EvaluationOptions& options,
-                    const Eigen::Matrix4d& T_ref_est, const ProgressSink& progress) {
+                    const Eigen::Matrix4d& T_ref_est, const ProgressSink& progress,
+                    std::span<const Eigen::Vector3d> sensor_positions) {
+  if (options.observed == Observed::kSensor && sensor_positions.empty()) {
+    throw UsageError("observed: \"sensor\" needs to know where the sensor was");
+  }
   const MetricSelection selection = select_metrics(options);
   std::vector<Warning> warnings;
   std::vector<std::pair<std::string, double>> stage_seconds;
@@ -96,7 +100,7 @@ Evaluation evaluate(PointCloud reference, PointCloud estimate, const EvaluationO
   Evaluation result{
       .options = options, .T_ref_est = T_ref_est, .pair = index_and_pair(reference, estimate, options.index, clock)};
 
-  Findings findings{options, selection, result.pair, {}, {}, {}, {}};
+  Findings findings{options, selection, result.pair, {}, {}, {}, {}, sensor_positions};
   clock.run("geometry", 0.7, [&] {
     measure_distances(findings);
     result.overlap = findings.estimate_to_reference.share_within(options.thresholds_m.size());

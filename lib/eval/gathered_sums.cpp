@@ -73,9 +73,7 @@ void add_color_distances(MetricSums& sums, const Direction& d, const EvaluationO
   const bool counts = name == "color_distance";
   for_each_slot(d, [&](std::size_t slot, std::uint32_t part) {
     if (d.pairs.distance_m(slot) > farthest_m) return;
-    const Eigen::Vector3d difference =
-        d.pairs.from_color(slot).cwiseProduct(from_gain) - d.pairs.to_color(slot).cwiseProduct(to_gain);
-    distance.add(part, difference.norm() / 255.0);
+    distance.add(part, d.pairs.color_difference(slot, from_gain, to_gain).norm() / 255.0);
     if (counts) n.add(part, 1.0);
   });
 }
@@ -97,14 +95,17 @@ void add_luma(MetricSums& sums, const Direction& d) {
   });
 }
 
-void add_colors(MetricSums& sums, const Findings& f, const Direction& d, bool is_estimate) {
+void add_colors(MetricSums& sums, const Findings& f, const Direction& estimate, const Direction& reference) {
   const Eigen::Vector3d one = Eigen::Vector3d::Ones();
-  add_color_distances(sums, d, f.options, one, one, "color_distance");
-  if (f.selection.contains("delta_e")) add_delta_e(sums, d, f.options.lcr_radius_m);
-  if (f.selection.contains("color_psnr")) add_luma(sums, d);
+  for (const Direction* d : {&estimate, &reference}) {
+    add_color_distances(sums, *d, f.options, one, one, "color_distance");
+    if (f.selection.contains("delta_e")) add_delta_e(sums, *d, f.options.lcr_radius_m);
+    if (f.selection.contains("color_psnr")) add_luma(sums, *d);
+  }
   if (f.selection.contains("color_distance_exposure_free")) {
     const Eigen::Vector3d gain = exposure_gains(f.pair, f.options.lcr_radius_m).gain;
-    add_color_distances(sums, d, f.options, is_estimate ? gain : one, is_estimate ? one : gain, "exposure_free");
+    add_color_distances(sums, estimate, f.options, gain, one, "exposure_free");
+    add_color_distances(sums, reference, f.options, one, gain, "exposure_free");
   }
 }
 
@@ -172,10 +173,8 @@ MetricSums gathered_sums(const Findings& f, const LocalColorRecall* recall, cons
   MetricSums sums;
   const Direction estimate{"estimate.", f.pair.estimate_to_reference(), parts_of(f.pair.estimate, of_estimate)};
   const Direction reference{"reference.", f.pair.reference_to_estimate(), parts_of(f.pair.reference, of_reference)};
-  for (const Direction* d : {&estimate, &reference}) {
-    add_distances(sums, *d, f.options);
-    if (f.pair.has_color()) add_colors(sums, f, *d, d == &estimate);
-  }
+  for (const Direction* d : {&estimate, &reference}) add_distances(sums, *d, f.options);
+  if (f.pair.has_color()) add_colors(sums, f, estimate, reference);
   if (recall != nullptr) add_recall(sums, reference, *recall);
   add_voxels(sums, f, of_estimate);
   if (f.neighborhoods) add_entropies(sums, estimate, f.neighborhoods->estimate, f.options.mme_min_neighbors);

@@ -22,6 +22,7 @@ struct Findings {
   DistanceStats reference_to_estimate;
   std::vector<GaussianPair> gaussians;
   std::optional<Neighborhoods> neighborhoods;
+  std::span<const Eigen::Vector3d> sensor_positions;  ///< of the estimate's sensor, reference frame; empty: not known
 };
 
 /// The records of one family, those that are selected, in the catalog's order; warnings are appended.

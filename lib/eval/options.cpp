@@ -99,7 +99,12 @@ IndexKind index_kind(const char* name, const Json& value) {
 Observed observed_kind(const char* name, const Json& value) {
   if (value == "none") return Observed::kNone;
   if (value == "auto") return Observed::kAuto;
-  refuse(name, value, "is neither none nor auto");
+  if (value == "sensor") return Observed::kSensor;
+  refuse(name, value, "is none of none, auto, sensor");
+}
+
+const char* observed_name(Observed observed) {
+  return observed == Observed::kAuto ? "auto" : observed == Observed::kSensor ? "sensor" : "none";
 }
 
 std::string one_of(const char* name, const Json& value, std::initializer_list<const char*> words) {
@@ -239,9 +244,14 @@ const std::vector<OptionSpec>& evaluation_option_specs() {
       CMAP_OPTION("bootstrap", kCount, "N", "confidence intervals of 95 % from N replicates of blocks of the map",
                   bootstrap, count(n, value, 0, 1'000'000), o.bootstrap),
       CMAP_OPTION("block", kNumber, "METERS", "edge of those blocks", block_m, positive(n, value), o.block_m),
-      CMAP_OPTION("observed", kWord, "none|auto",
-                  "auto: also the metrics without what the other map could not have seen (no point within 1 m columns)",
-                  observed, observed_kind(n, value), o.observed == Observed::kAuto ? "auto" : "none"),
+      CMAP_OPTION("observed", kWord, "none|auto|sensor",
+                  "also the metrics without what the other map could not have seen: auto, nothing within 1 m columns; "
+                  "sensor, the reference as --observed-from sees it",
+                  observed, observed_kind(n, value), observed_name(o.observed)),
+      CMAP_OPTION("observed-range", kNumber, "METERS", "how far that sensor sees", visibility.range_m,
+                  positive(n, value), o.visibility.range_m),
+      CMAP_OPTION("observed-voxel", kNumber, "METERS", "voxels of the reference that hide others from it",
+                  visibility.voxel_m, positive(n, value), o.visibility.voxel_m),
       CMAP_OPTION("align", kWord, "METHOD",
                   "move the estimate first: none, icp, plane, gicp, sim3, global, trajectory, tanksandtemples", align,
                   one_of(n, value, {"none", "icp", "plane", "gicp", "sim3", "global", "trajectory", "tanksandtemples"}),
@@ -272,6 +282,15 @@ const std::vector<OptionSpec>& evaluation_option_specs() {
 
 double tanks_and_temples_tau_m(const EvaluationOptions& options) {
   return options.tanks_and_temples_tau_m.value_or(std::ranges::max(options.thresholds_m));
+}
+
+std::string command_line_text(const Json& value) {
+  if (value.is_null() || value.empty()) return "";
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_array()) return value.dump();
+  std::string text;
+  for (const Json& item : value) text += fmt::format("{}{}", text.empty() ? "" : ",", command_line_text(item));
+  return text;
 }
 
 void set_option(EvaluationOptions& options, const OptionSpec& spec, const std::string& text) {

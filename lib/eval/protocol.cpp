@@ -18,10 +18,8 @@ Alignment align_by_trajectories(const EvaluationOptions& options, const Protocol
   if (!inputs.reference_trajectory || !inputs.estimate_trajectory) {
     throw UsageError("align: \"trajectory\" needs the trajectories of both maps");
   }
-  const TrajectoryFit fit = options.trajectory_fit == "first-frame" ? TrajectoryFit::kFirstFrame
-                            : options.trajectory_fit == "se3"       ? TrajectoryFit::kSe3
-                                                                    : TrajectoryFit::kSim3;
-  return align_trajectories(*inputs.estimate_trajectory, *inputs.reference_trajectory, fit);
+  return align_trajectories(*inputs.estimate_trajectory, *inputs.reference_trajectory,
+                            trajectory_fit_from_name(options.trajectory_fit));
 }
 
 Alignment align_estimate(const PointCloud& reference, const PointCloud& estimate, const EvaluationOptions& options,
@@ -43,21 +41,12 @@ Alignment align_estimate(const PointCloud& reference, const PointCloud& estimate
 
 /// Low values say that the scores may measure the alignment more than the map.
 void warn_of_alignment(const Alignment& alignment, std::vector<Warning>& warnings) {
-  constexpr double kLowOverlap = 0.3, kIllConditioned = 1e-4;
+  constexpr double kLowOverlap = 0.3;
   for (const std::string& message : alignment.warnings) warnings.push_back({"alignment", message});
   if (alignment.overlap < kLowOverlap) {
     warnings.push_back({"alignment_low_overlap",
                         fmt::format("only {:.1f} % of the estimate met the reference in the alignment: do not trust it",
                                     100.0 * alignment.overlap)});
-  }
-  if (alignment.condition < kIllConditioned) {
-    warnings.push_back(
-        {"alignment_ill_conditioned", fmt::format("the alignment hardly determines the {} (condition {:.1e})",
-                                                  alignment.weakest, alignment.condition)});
-  }
-  if (!alignment.converged) {
-    warnings.push_back({"alignment_not_converged",
-                        fmt::format("the alignment had not settled after {} iterations", alignment.iterations)});
   }
 }
 
@@ -93,7 +82,10 @@ Evaluation evaluate_by_protocol(PointCloud reference, PointCloud estimate, const
     timed("sensitivity", 0.15,
           [&] { band = sensitivity_band(reference, estimate, plain(options), T_ref_est, progress); });
   }
-  Evaluation evaluation = evaluate(std::move(reference), std::move(estimate), options, T_ref_est, progress);
+  std::vector<Eigen::Vector3d> sensor_positions = inputs.sensor_positions;
+  for (Eigen::Vector3d& p : sensor_positions) p = (T_ref_est * p.homogeneous()).head<3>();
+  Evaluation evaluation =
+      evaluate(std::move(reference), std::move(estimate), options, T_ref_est, progress, sensor_positions);
   if (alignment) warn_of_alignment(*alignment, evaluation.warnings);
   evaluation.alignment = std::move(alignment);
   evaluation.metrics_before = std::move(before);

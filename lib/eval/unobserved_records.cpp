@@ -1,3 +1,4 @@
+#include "cmap/spatial/visibility.hpp"
 #include "cmap/spatial/voxel_map.hpp"
 #include "eval/fairness_records.hpp"
 #include "eval/gathered_sums.hpp"
@@ -48,8 +49,27 @@ class ObservedColumns {
   VoxelMap<bool> observed_;
 };
 
-PartOf part_by(const ObservedColumns& seen) {
+template <class Seen>
+PartOf part_by(const Seen& seen) {
   return [&seen](const Eigen::Vector3d& world) { return seen.contains(world) ? kObserved : kUnobserved; };
+}
+
+/// The sums of both parts: estimated points by where the reference is, reference points by what the estimate's sensor
+/// saw where it is known, else by where the estimate is.
+MetricSums sums_of_parts(const Findings& f, const LocalColorRecall* recall, Json& about) {
+  const ObservedColumns of_reference(f.pair.reference);
+  if (f.options.observed == Observed::kAuto) {
+    const ObservedColumns of_estimate(f.pair.estimate);
+    about = {{"method", "auto"}, {"column_m", kColumn_m}};
+    return gathered_sums(f, recall, part_by(of_reference), part_by(of_estimate));
+  }
+  const VisibleSurfaces seen(f.pair.reference.index, f.sensor_positions, f.options.visibility);
+  about = {{"method", "sensor"},
+           {"column_m", kColumn_m},
+           {"voxel_m", f.options.visibility.voxel_m},
+           {"range_m", f.options.visibility.range_m},
+           {"n_positions", seen.n_positions()}};
+  return gathered_sums(f, recall, part_by(of_reference), part_by(seen));
 }
 
 Json counts(double n_observed, double n_unobserved) {
@@ -61,8 +81,8 @@ Json counts(double n_observed, double n_unobserved) {
 
 Json unobserved_records(const Findings& f, const LocalColorRecall* recall) {
   if (f.options.observed == Observed::kNone) return nullptr;
-  const ObservedColumns of_reference(f.pair.reference), of_estimate(f.pair.estimate);
-  MetricSums sums = gathered_sums(f, recall, part_by(of_reference), part_by(of_estimate));
+  Json records;
+  MetricSums sums = sums_of_parts(f, recall, records);
   sums.n_parts = 2;
   for (auto& [name, parts] : sums.columns) parts.resize(2);
   constexpr double kOnlyObserved[] = {1.0, 0.0}, kOnlyUnobserved[] = {0.0, 1.0};
@@ -71,11 +91,10 @@ Json unobserved_records(const Findings& f, const LocalColorRecall* recall) {
   for (const SummedValue& v : values_of(observed)) {
     if (f.selection.contains(v.id)) add_entry(metrics, v.id, v.threshold_m, {{"value", json_number(v.value)}});
   }
-  return {{"method", "auto"},
-          {"column_m", kColumn_m},
-          {"estimate", counts(observed.at("estimate.n"), unobserved.at("estimate.n"))},
-          {"reference", counts(observed.at("reference.n"), unobserved.at("reference.n"))},
-          {"metrics", metrics}};
+  records["estimate"] = counts(observed.at("estimate.n"), unobserved.at("estimate.n"));
+  records["reference"] = counts(observed.at("reference.n"), unobserved.at("reference.n"));
+  records["metrics"] = metrics;
+  return records;
 }
 
 }  // namespace cmap

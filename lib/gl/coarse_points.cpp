@@ -1,6 +1,5 @@
 #include "gl/coarse_points.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "cmap/core/parallel.hpp"
@@ -10,17 +9,10 @@ namespace cmap {
 CoarsePoints::CoarsePoints(const PointBlocks& points, std::size_t most)
     : all_(points), step_((points.size + most - 1) / most) {
   if (step_ <= 1) return;
-  coarse_.origin = points.origin;
-  coarse_.size = (points.size + step_ - 1) / step_;
-  coarse_.blocks.resize((coarse_.size + kBlockSize - 1) / kBlockSize);
   // Slots follow a space-filling curve: every n-th is an even selection.
-  for (std::size_t i = 0; i < coarse_.blocks.size() * kBlockSize; ++i) {
-    const Eigen::Vector3f p = points.offset(std::min(i, coarse_.size - 1) * step_);
-    PointBlock& block = coarse_.blocks[i / kBlockSize];
-    block.x[i % kBlockSize] = p.x();
-    block.y[i % kBlockSize] = p.y();
-    block.z[i % kBlockSize] = p.z();
-  }
+  Array<std::uint32_t> slots((points.size + step_ - 1) / step_);
+  for (std::size_t i = 0; i < slots.size(); ++i) slots[i] = static_cast<std::uint32_t>(i * step_);
+  coarse_ = chosen_points(points, slots);
 }
 
 PixelMap CoarsePoints::splat(const Splatter& splatter, const Projection& projection,

@@ -96,8 +96,18 @@ void OutputFile::commit() {
   temporary_.clear();
 }
 
+void OutputFiles::add(const fs::path& path, const std::function<void(OutputFile&)>& write) {
+  if (path.empty()) return;
+  write(files_.emplace_back(path));
+  files_.back().finish();
+}
+
+void OutputFiles::commit() {
+  for (OutputFile& file : files_) file.commit();
+}
+
 void require_writable(const fs::path& path) {
-  if (!is_written_directly(path)) const OutputFile created_and_removed(path);
+  if (!path.empty() && !is_written_directly(path)) const OutputFile created_and_removed(path);
 }
 
 }  // namespace cmap

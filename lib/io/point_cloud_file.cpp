@@ -1,5 +1,6 @@
 #include "cmap/io/point_cloud_file.hpp"
 
+#include "cmap/core/parallel.hpp"
 #include "io/byte_source.hpp"
 #include "io/file_format.hpp"
 #include "io/format_readers.hpp"
@@ -30,6 +31,14 @@ PointCloudFile read_point_cloud(ByteSource& source) {
 PointCloudFile read_point_cloud(const std::filesystem::path& path, const ReadOptions& options) {
   ByteSource source(path, options.sha256);
   return read_point_cloud(source);
+}
+
+std::pair<PointCloudFile, PointCloudFile> read_both(const std::filesystem::path& first,
+                                                    const std::filesystem::path& second, const ReadOptions& options) {
+  std::pair<PointCloudFile, PointCloudFile> files;
+  parallel_tasks({[&] { files.first = read_point_cloud(first, options); },
+                  [&] { files.second = read_point_cloud(second, options); }});
+  return files;
 }
 
 }  // namespace cmap

@@ -1,5 +1,7 @@
 #include "cmap/io/transform_file.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/LU>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -112,6 +114,20 @@ Eigen::Matrix4d read_transform(const std::filesystem::path& path) {
   if (!matrix.allFinite()) source.fail("a number of the matrix is not finite");
   check_similarity(source, matrix);
   return matrix;
+}
+
+std::string transform_text(const Eigen::Matrix4d& T) {
+  std::string text;
+  for (Eigen::Index row = 0; row < 4; ++row) {
+    text += fmt::format("{:.17g} {:.17g} {:.17g} {:.17g}\n", T(row, 0), T(row, 1), T(row, 2), T(row, 3));
+  }
+  return text;
+}
+
+nlohmann::ordered_json transform_json(const Eigen::Matrix4d& T) {
+  auto rows = nlohmann::ordered_json::array();
+  for (Eigen::Index row = 0; row < 4; ++row) rows.push_back({T(row, 0), T(row, 1), T(row, 2), T(row, 3)});
+  return rows;
 }
 
 }  // namespace cmap

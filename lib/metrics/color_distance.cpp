@@ -25,9 +25,7 @@ DirectedColorDistance directed_distance(const NearestPairs& pairs, const ColorDi
     for (std::size_t i = begin; i < end; ++i) {
       const double distance = pairs.distance_m(i);
       if (distance <= options.min_distance_m || distance > options.max_distance_m) continue;
-      const Eigen::Vector3d difference =
-          pairs.from_color(i).cwiseProduct(from_gain) - pairs.to_color(i).cwiseProduct(to_gain);
-      part.sum += difference.norm();
+      part.sum += pairs.color_difference(i, from_gain, to_gain).norm();
       ++part.n;
     }
     return part;

@@ -24,9 +24,7 @@ std::vector<std::string> describe_point(const Evaluation& evaluation, const Poin
   lines.push_back(fmt::format("distance to the {} {:.4g} m", other, pairs.distance_m(slot)));
   if (pair.has_color()) lines.push_back(fmt::format("color distance {:.4g} unit RGB", pairs.color_distance(slot)));
   if (of_reference && evaluation.recall) {
-    constexpr const char* kClasses[] = {"not covered", "wrong color", "recalled"};
-    const auto recall = static_cast<std::size_t>(evaluation.recall->classes[slot]);
-    lines.push_back(fmt::format("local color recall: {}", kClasses[recall]));
+    lines.push_back(fmt::format("local color recall: {}", look_of(evaluation.recall->classes[slot]).label));
   }
   return lines;
 }

@@ -7,14 +7,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cstdlib>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "cmap/core/error.hpp"
+#include "render/file_extension.hpp"
 
 extern char** environ;
 
@@ -24,12 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kProgram = "ffmpeg";
-
-std::string format_of(const fs::path& name) {
-  std::string extension = name.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
-  return extension;
-}
 
 /// A fixed number of threads and no time stamps: the same bytes from every run.
 std::vector<std::string> arguments_for(const fs::path& name, const fs::path& path, int width_px, int height_px,
@@ -51,7 +44,7 @@ std::vector<std::string> arguments_for(const fs::path& name, const fs::path& pat
                                      "-pix_fmt",  "yuv420p",
                                      "-movflags", "+faststart",
                                      "-f",        "mp4"};
-  const auto& format = format_of(name) == ".gif" ? gif : mp4;
+  const auto& format = lower_case_extension(name) == ".gif" ? gif : mp4;
   arguments.insert(arguments.end(), format.begin(), format.end());
   for (const char* word : {"-fflags", "+bitexact", "-flags:v", "+bitexact"}) arguments.emplace_back(word);
   arguments.push_back(path.string());
@@ -74,7 +67,10 @@ pid_t start(std::vector<std::string> arguments, int input) {
 
 }  // namespace
 
-bool is_video_name(const fs::path& name) { return format_of(name) == ".mp4" || format_of(name) == ".gif"; }
+bool is_video_name(const fs::path& name) {
+  const std::string extension = lower_case_extension(name);
+  return extension == ".mp4" || extension == ".gif";
+}
 
 void require_video_program() {
   std::istringstream folders(std::getenv("PATH") == nullptr ? "" : std::getenv("PATH"));

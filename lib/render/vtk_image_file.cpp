@@ -6,20 +6,12 @@
 #include <vtkTIFFWriter.h>
 #include <vtkUnsignedCharArray.h>
 
-#include <algorithm>
-#include <cctype>
-
 #include "cmap/core/error.hpp"
 #include "cmap/render/image.hpp"
+#include "render/file_extension.hpp"
 
 namespace cmap {
 namespace {
-
-std::string lower_case_extension(const std::filesystem::path& name) {
-  std::string extension = name.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
-  return extension;
-}
 
 enum class Format { kPng, kJpeg, kTiff };
 

@@ -1,7 +1,6 @@
 #include "cmap/report/html_report.hpp"
 
 #include <fmt/format.h>
-#include <openssl/evp.h>
 #include <zlib.h>
 
 #include <filesystem>
@@ -9,16 +8,21 @@
 #include <stdexcept>
 
 #include "cmap/core/round_number.hpp"
+#include "report/base64.hpp"
 #include "report/distribution.hpp"
-#include "report/html_page.hpp"
+#include "report/embedded_file.hpp"
 #include "report/packed_map.hpp"
 #include "report/thinning.hpp"
+
+// The page built from web/; its data belongs where kDataPlace stands.
+CMAP_EMBED(html_page, CMAP_HTML_PAGE)
 
 namespace cmap {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr std::string_view kDataPlace = "<!--CMAP_DATA-->";
 constexpr std::size_t kPointsOfPage = 300'000;
 
 std::string gzipped(const std::string& bytes) {
@@ -37,14 +41,6 @@ std::string gzipped(const std::string& bytes) {
   deflateEnd(&stream);
   if (result != Z_STREAM_END) throw std::runtime_error("zlib cannot compress");
   return compressed;
-}
-
-std::string base64(const std::string& bytes) {
-  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');  // OpenSSL ends it with a zero
-  const int n = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
-                                reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));
-  text.resize(static_cast<std::size_t>(n));
-  return text;
 }
 
 /// JSON that cannot end the script element around it.
@@ -185,7 +181,7 @@ PageData page_data(const Json& report, const Evaluation& evaluation) {
 
 void write_html_report(const Json& report, const Evaluation& evaluation, OutputFile& file) {
   const std::string_view page = html_page();
-  const std::size_t place = page.find(kHtmlDataPlace);
+  const std::size_t place = page.find(kDataPlace);
   if (place == page.npos) throw std::logic_error("the page has no place for its data");
   const PageData data = page_data(report, evaluation);
   const auto script = [&](const char* type, const char* id, const std::string& text) {
@@ -197,7 +193,7 @@ void write_html_report(const Json& report, const Evaluation& evaluation, OutputF
   script("application/json", "cmap-report", inlined(report));
   script("application/json", "cmap-page", inlined(data.page));
   script("text/plain", "cmap-points", base64(gzipped(data.points)));
-  file.write(page.substr(place + kHtmlDataPlace.size()));
+  file.write(page.substr(place + kDataPlace.size()));
 }
 
 }  // namespace cmap

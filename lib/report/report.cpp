@@ -8,6 +8,8 @@
 
 #include "cmap/align/align.hpp"
 #include "cmap/core/version.hpp"
+#include "cmap/io/transform_file.hpp"
+#include "report/table_text.hpp"
 
 namespace cmap {
 namespace {
@@ -15,14 +17,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Text for JSON: file names may be in any encoding, bytes that are no UTF-8 become U+FFFD.
-std::string utf8(const std::string& text) {
-  return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
-}
-
 Json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 Json input_json(const InputDescription& input) {
-  return {{"path", utf8(input.file.path)},
+  return {{"path", valid_utf8(input.file.path)},
           {"sha256", input.file.sha256},
           {"format", input.file.format},
           {"points", input.file.points},
@@ -30,12 +28,6 @@ Json input_json(const InputDescription& input) {
           {"color", input.color},
           {"origin_m", vector_json(input.origin_m)},
           {"bounds_m", {{"min", vector_json(input.bounds_m.min)}, {"max", vector_json(input.bounds_m.max)}}}};
-}
-
-Json matrix_json(const Eigen::Matrix4d& T) {
-  Json rows = Json::array();
-  for (Eigen::Index r = 0; r < 4; ++r) rows.push_back({T(r, 0), T(r, 1), T(r, 2), T(r, 3)});
-  return rows;
 }
 
 /// The scores before, as in `metrics` but for what the catalog says anyway.
@@ -54,7 +46,7 @@ Json registration_json(const Evaluation& evaluation) {
   return registration;
 }
 
-Json transform_json(const Evaluation& evaluation) {
+Json alignment_record(const Evaluation& evaluation) {
   const Eigen::Matrix4d& T = evaluation.T_ref_est;
   const bool given = T != Eigen::Matrix4d::Identity();
   const double scale = evaluation.alignment ? evaluation.alignment->scale
@@ -63,7 +55,7 @@ Json transform_json(const Evaluation& evaluation) {
   return {{"method", evaluation.alignment ? evaluation.options.align
                      : given              ? "given"
                                           : "none"},
-          {"T_ref_est", matrix_json(T)},
+          {"T_ref_est", transform_json(T)},
           {"scale", scale},
           {"scale_error", 1.0 / scale - 1.0},
           {"before", before_json(evaluation)},
@@ -90,7 +82,7 @@ std::uint64_t peak_memory_bytes() {
 Json run_json(const RunDescription& run) {
   Json stages = Json::object();
   for (const auto& [name, seconds] : run.stage_seconds) stages[name] = seconds;
-  return {{"command", utf8(run.command)},
+  return {{"command", valid_utf8(run.command)},
           {"started_utc", run.started_utc},
           {"wall_s", run.wall_s},
           {"stages", stages},
@@ -109,7 +101,7 @@ void add_input_warnings(Json& warnings, const char* which, const InputDescriptio
                          " points are not finite and were dropped"}});
   }
   for (const std::string& note : input.file.notes) {
-    warnings.push_back({{"id", "input_note"}, {"message", utf8(std::string(which) + ": " + note)}});
+    warnings.push_back({{"id", "input_note"}, {"message", valid_utf8(std::string(which) + ": " + note)}});
   }
 }
 
@@ -139,7 +131,7 @@ Json make_report(const InputDescription& reference, const InputDescription& esti
   report["tool"] = {{"name", "cmap_eval"}, {"version", kVersion}};
   report["inputs"] = {{"reference", input_json(reference)}, {"estimate", input_json(estimate)}};
   report["parameters"] = to_json(evaluation.options);
-  report["alignment"] = transform_json(evaluation);
+  report["alignment"] = alignment_record(evaluation);
   report["metrics"] = Json::object();
   for (const MetricRecord& record : evaluation.metrics) report["metrics"][record.info->id] = metric_json(record);
   if (!evaluation.aliases.is_null()) report["aliases"] = evaluation.aliases;

@@ -42,6 +42,11 @@ std::string with_thousands(const Json& count) {
   return text;
 }
 
+std::string valid_utf8(std::string_view text) {
+  using nlohmann::json;
+  return json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace)).get<std::string>();
+}
+
 std::size_t character_count(std::string_view text) {
   std::size_t characters = 0;
   for (char c : text) characters += (static_cast<unsigned char>(c) & 0xC0) != 0x80 ? 1 : 0;

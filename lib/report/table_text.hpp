@@ -28,6 +28,9 @@ std::string shown_unit(const MetricInfo& info);
 /// 12,345
 std::string with_thousands(const nlohmann::ordered_json& count);
 
+/// The text with whatever is not UTF-8 replaced: names of files may hold any bytes.
+std::string valid_utf8(std::string_view text);
+
 /// Characters of a UTF-8 text, not bytes: arrows and deltas are several bytes long.
 std::size_t character_count(std::string_view text);
 

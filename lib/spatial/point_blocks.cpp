@@ -137,6 +137,21 @@ PointBlocks sort_points(const PointCloud& cloud) {
   return sorted;
 }
 
+PointBlocks chosen_points(const PointBlocks& points, const Array<std::uint32_t>& slots) {
+  PointBlocks chosen;
+  chosen.origin = points.origin;
+  chosen.size = slots.size();
+  chosen.blocks.resize((slots.size() + kBlockSize - 1) / kBlockSize);
+  for (std::size_t i = 0; i < chosen.blocks.size() * kBlockSize; ++i) {
+    const Eigen::Vector3f p = points.offset(slots[std::min(i, slots.size() - 1)]);
+    PointBlock& block = chosen.blocks[i / kBlockSize];
+    block.x[i % kBlockSize] = p.x();
+    block.y[i % kBlockSize] = p.y();
+    block.z[i % kBlockSize] = p.z();
+  }
+  return chosen;
+}
+
 Array<ColorBlock> sort_colors(const PointCloud& cloud, const PointBlocks& points) {
   Array<ColorBlock> colors(points.blocks.size());
   parallel_chunks(colors.size(), kLoopChunk / kBlockSize, [&](std::size_t begin, std::size_t end) {

@@ -58,7 +58,7 @@ TEST(Align, SaysWhatIsWrong) {
   PointCloud far = cloud;
   far.origin.z() += 1000.0;
   for (const auto method : {AlignMethod::kIcp, AlignMethod::kPlane, AlignMethod::kGicp, AlignMethod::kSim3}) {
-    EXPECT_THAT(test::unsupported([&] { align(far, cloud, method); }), HasSubstr("no overlap"));
+    EXPECT_THAT(test::refusal_of<UnsupportedError>([&] { align(far, cloud, method); }), HasSubstr("no overlap"));
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "cmap/align/similarity.hpp"
 #include "cmap/core/error.hpp"
+#include "core/refusal.hpp"
 #include "spatial/clouds.hpp"
 
 namespace cmap::test {
@@ -49,17 +50,6 @@ inline double displacement_m(const Similarity& a, const Similarity& b, const Poi
 
 inline double angle_between_deg(const Similarity& a, const Similarity& b) {
   return rotation_angle_rad(a.rotation.transpose() * b.rotation) * 180.0 / M_PI;
-}
-
-/// The message of the UnsupportedError that a call ends with; empty if there is none.
-template <class Call>
-std::string unsupported(Call&& call) {
-  try {
-    call();
-  } catch (const UnsupportedError& error) {
-    return error.what();
-  }
-  return {};
 }
 
 }  // namespace cmap::test

@@ -53,7 +53,7 @@ TEST(TanksAndTemples, CropsBoth) {
   options.crop = Box3d{{-1, -1, -1}, {1, 1, 1}};
   const PointCloud source = cloud_of({{0, 0, 0}, {50, 0, 0}}), target = cloud_of({{0, 0, 0}, {-70, 0, 0}});
   EXPECT_EQ(tanks_and_temples(source, target, Eigen::Matrix4d::Identity(), options).f_score, 1.0);
-  EXPECT_THAT(test::unsupported([&] {
+  EXPECT_THAT(test::refusal_of<UnsupportedError>([&] {
                 tanks_and_temples(cloud_of({{9, 9, 9}}), target, Eigen::Matrix4d::Identity(), options);
               }),
               HasSubstr("no point of the source is inside the crop"));
@@ -61,8 +61,8 @@ TEST(TanksAndTemples, CropsBoth) {
 
 TEST(TanksAndTemples, RefinesASimilarity) {
   const PointCloud target = test::town(40, 40000, 1);
-  // Nearer than the toolbox's own first guess; from 1 % of the scale its first two stages, with both clouds on lattices of
-  // one size, do not come closer.
+  // Nearer than the toolbox's own first guess; from 1 % of the scale its first two stages, with both clouds on lattices
+  // of one size, do not come closer.
   const Similarity T{1.001, rotation_from({0.001, -0.001, 0.003}), {0.1, -0.1, 0.05}};
   const PointCloud source = transformed(target, T.inverse().matrix());
   const auto found = tanks_and_temples(source, target, Eigen::Matrix4d::Identity(), options_for(0.5));
@@ -80,7 +80,8 @@ TEST(TanksAndTemples, RefusesWhatCannotBe) {
   EXPECT_THROW(tanks_and_temples({}, cloud, Eigen::Matrix4d::Identity(), options_for(1.0)), UnsupportedError);
   PointCloud far = cloud;
   far.origin.x() += 1e4;
-  EXPECT_THAT(test::unsupported([&] { tanks_and_temples(far, cloud, Eigen::Matrix4d::Identity(), options_for(0.5)); }),
+  EXPECT_THAT(test::refusal_of<UnsupportedError>(
+                  [&] { tanks_and_temples(far, cloud, Eigen::Matrix4d::Identity(), options_for(0.5)); }),
               HasSubstr("no overlap"));
 }
 

@@ -78,18 +78,18 @@ TEST(AlignTrajectories, OtherStampsAndPartialOverlap) {
 
 TEST(AlignTrajectories, RefusesWhatCannotBe) {
   const Trajectory early = curve(0.0, 5.0), late = curve(100.0, 105.0);
-  EXPECT_THAT(test::unsupported([&] { align_trajectories(early, late, TrajectoryFit::kSe3); }),
+  EXPECT_THAT(test::refusal_of<UnsupportedError>([&] { align_trajectories(early, late, TrajectoryFit::kSe3); }),
               HasSubstr("the times do not meet: the source is from 0 to"));
   Trajectory straight = early;
   for (StampedPose& pose : straight) pose.position = {0, pose.time_s, 0};
-  EXPECT_THAT(test::unsupported([&] { align_trajectories(straight, straight, TrajectoryFit::kSe3); }),
+  EXPECT_THAT(test::refusal_of<UnsupportedError>([&] { align_trajectories(straight, straight, TrajectoryFit::kSe3); }),
               HasSubstr("the rotation about (0.00, 1.00, 0.00)"));
   EXPECT_NO_THROW(align_trajectories(straight, straight, TrajectoryFit::kFirstFrame));
   Trajectory hovering = early;
   for (StampedPose& pose : hovering) pose.position = {1, 2, 3};
-  EXPECT_THAT(test::unsupported([&] { align_trajectories(hovering, early, TrajectoryFit::kSim3); }),
+  EXPECT_THAT(test::refusal_of<UnsupportedError>([&] { align_trajectories(hovering, early, TrajectoryFit::kSim3); }),
               HasSubstr("coincide"));
-  EXPECT_THAT(test::unsupported([&] { align_trajectories({}, early, TrajectoryFit::kSe3); }),
+  EXPECT_THAT(test::refusal_of<UnsupportedError>([&] { align_trajectories({}, early, TrajectoryFit::kSe3); }),
               HasSubstr("without poses"));
 }
 

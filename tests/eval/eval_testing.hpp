@@ -12,20 +12,10 @@
 
 #include "cmap/core/error.hpp"
 #include "cmap/eval/evaluation.hpp"
+#include "core/refusal.hpp"
 #include "spatial/clouds.hpp"
 
 namespace cmap::test {
-
-/// What an action says when it refuses with this kind of error; empty if it does not refuse.
-template <class Error, class Action>
-std::string refusal_of(Action&& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
-}
 
 /// A map of given points and 8-bit colors.
 inline PointCloud small_map(const std::vector<Eigen::Vector3f>& positions, const std::vector<Rgb8>& colors = {}) {

@@ -52,7 +52,9 @@ const Setting kSettings[] = {
     {"as", "open3d,mpeg", R"(["open3d", "mpeg"])"},
     {"bootstrap", "200", "200"},
     {"block", "2.5", "2.5"},
-    {"observed", "auto", R"("auto")"},
+    {"observed", "sensor", R"("sensor")"},
+    {"observed-range", "60", "60.0"},
+    {"observed-voxel", "0.25", "0.25"},
     {"align", "gicp", R"("gicp")"},
     {"align-voxel", "0.3", "0.3"},
     {"align-distance", "4", "4.0"},
@@ -94,7 +96,7 @@ TEST(Options, DefaultsAreThoseOfTheDefinitions) {
     "thresholds": [0.2, 0.1, 0.08, 0.05, 0.01], "overlap-distance": 1.0, "lcr-tau": 0.1, "lcr-radius": 0.5,
     "lcr-curve": false, "ccs-voxel": 0.2, "ccs-min-points": 2, "awd-voxel": 3.0, "awd-min-points": 100,
     "scs-radius": 5, "mme-radius": 0.1, "mme-min-neighbors": 10, "color-max-distance": null, "voxel": null,
-    "crop": null, "as": [], "bootstrap": 0, "block": 10.0, "observed": "none",
+    "crop": null, "as": [], "bootstrap": 0, "block": 10.0, "observed": "none", "observed-range": 100.0, "observed-voxel": 0.5,
     "align": "none", "align-voxel": null, "align-distance": null, "align-scale": false, "trajectory-fit": "sim3",
     "tanksandtemples-tau": null, "sensitivity": false, "sensitivity-translation": 0.01, "sensitivity-rotation": 0.1, "index": "bvh"})");
   for (const auto& [name, value] : expected.items()) EXPECT_EQ(defaults.at(name), value) << name;

@@ -53,5 +53,34 @@ TEST(Unobserved, OfEqualMapsIsNothing) {
   EXPECT_EQ(found.unobserved.at("metrics").at("chamfer").at("value"), 0.0);
 }
 
+/// A wall between the sensor and one of three reference points: that one is not the estimate's fault.
+TEST(Unobserved, WhatASensorCouldNotSee) {
+  PointCloud reference;
+  for (float y = -5; y <= 5; y += 0.1f) {
+    for (float z = 0.05f; z <= 5; z += 0.1f) reference.positions.push_back({5.05f, y, z});
+  }
+  const std::size_t n_wall = reference.size();
+  reference.positions.push_back({2.05f, 4.95f, 1.05f});
+  reference.positions.push_back({12.05f, 0.05f, 1.05f});  // behind the wall
+  const PointCloud estimate = gray_map({{2.05f, 4.95f, 1.3f}});
+  EvaluationOptions options = observing({"chamfer", "completeness"});
+  options.observed = Observed::kSensor;
+  const std::vector<Eigen::Vector3d> sensor{{-3, 0, 1}};
+  const auto unobserved = evaluate(reference, estimate, options, Eigen::Matrix4d::Identity(), {}, sensor).unobserved;
+  EXPECT_EQ(unobserved.at("method"), "sensor");
+  EXPECT_EQ(unobserved.at("reference").at("n_unobserved"), 1);
+  EXPECT_EQ(unobserved.at("estimate").at("n_unobserved"), 0);
+  options.thresholds_m = {0.5};
+  const auto within = evaluate(reference, estimate, options, Eigen::Matrix4d::Identity(), {}, sensor).unobserved;
+  EXPECT_DOUBLE_EQ(within.at("metrics").at("completeness").at("per_threshold")[0].at("value").get<double>(),
+                   1.0 / static_cast<double>(n_wall + 1));
+}
+
+TEST(Unobserved, ASensorNeedsPositions) {
+  EvaluationOptions options = observing({"chamfer"});
+  options.observed = Observed::kSensor;
+  EXPECT_NE(test::refusal_of<UsageError>([&] { evaluate(gray_map({{0, 0, 0}}), gray_map({{0, 0, 0}}), options); }), "");
+}
+
 }  // namespace
 }  // namespace cmap

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -30,6 +31,9 @@ enum class TrajectoryFit {
   kSe3,         ///< Umeyama on positions, scale 1
   kSim3,        ///< Umeyama on positions with scale
 };
+
+/// "first-frame", "se3" or "sim3". Throws UsageError for anything else.
+TrajectoryFit trajectory_fit_from_name(std::string_view name);
 
 /// T_dst_src between the worlds of two trajectories of one body. RMSE is over the positions of all pairs; overlap is
 /// the share of the source's poses that have a target pose. Throws UnsupportedError where times do not meet, or where

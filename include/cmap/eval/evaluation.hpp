@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -53,9 +54,11 @@ struct Evaluation {
 /// Evaluates an estimated map against a reference: transform, crop, thinning, one nearest-neighbor pass each way, then
 /// every metric asked for. Non-finite points must have been dropped (InputError otherwise, as for an empty cloud).
 /// Throws UnsupportedError where color is required and missing, or the crop leaves nothing; UsageError for voxels too
-/// small for the map. The clouds are consumed, as their memory is needed.
+/// small for the map, or where observed = sensor and no position of it is given (reference frame). The clouds are
+/// consumed, as their memory is needed.
 /// Bitwise the same for any number of threads and every instruction set.
 Evaluation evaluate(PointCloud reference, PointCloud estimate, const EvaluationOptions& options,
-                    const Eigen::Matrix4d& T_ref_est = Eigen::Matrix4d::Identity(), const ProgressSink& progress = {});
+                    const Eigen::Matrix4d& T_ref_est = Eigen::Matrix4d::Identity(), const ProgressSink& progress = {},
+                    std::span<const Eigen::Vector3d> sensor_positions = {});
 
 }  // namespace cmap

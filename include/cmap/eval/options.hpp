@@ -9,12 +9,13 @@
 
 #include "cmap/core/point_cloud.hpp"
 #include "cmap/spatial/nearest.hpp"
+#include "cmap/spatial/visibility.hpp"
 
 namespace cmap {
 
 /// How it is told what of one map the other could have seen, so that the rest can be left out beside the plain numbers:
-/// not at all, or from where the maps have points.
-enum class Observed { kNone, kAuto };
+/// not at all, from where the maps have points, or (the reference) from where the estimate's sensor was.
+enum class Observed { kNone, kAuto, kSensor };
 
 /// Everything that can change a number of an evaluation. The defaults are those of METRICS: the paper's where it gives
 /// any. Command line, configuration files and reports name the fields as evaluation_option_specs() does.
@@ -39,7 +40,8 @@ struct EvaluationOptions {
   std::uint64_t bootstrap = 0;    ///< replicates for confidence intervals; 0: none
   double block_m = 10.0;          ///< of the bootstrap
   Observed observed = Observed::kNone;
-  std::string align = "none";  ///< icp, plane, gicp, sim3, global, trajectory, tanksandtemples
+  VisibilityOptions visibility = {};  ///< of the sensor
+  std::string align = "none";         ///< icp, plane, gicp, sim3, global, trajectory, tanksandtemples
   std::optional<double> align_voxel_m;
   std::optional<double> align_distance_m;
   bool align_scale = false;
@@ -71,6 +73,9 @@ const std::vector<OptionSpec>& evaluation_option_specs();
 
 /// Sets an option from the text of a command line ("0.2,0.1", "true"). Throws UsageError.
 void set_option(EvaluationOptions& options, const OptionSpec& spec, const std::string& text);
+
+/// The other way: an option's value as one would type it, empty for none.
+std::string command_line_text(const nlohmann::ordered_json& value);
 
 /// Applies a JSON object (comments allowed) of option names and values. Throws UsageError naming `source` and the key:
 /// unknown key, wrong type, value out of range.

@@ -10,6 +10,8 @@ struct ProtocolInputs {
   Eigen::Matrix4d T_initial = Eigen::Matrix4d::Identity();  ///< ref from est: as given, or where the alignment begins
   std::optional<Trajectory> reference_trajectory = {};      ///< for align = trajectory
   std::optional<Trajectory> estimate_trajectory = {};
+  /// Where the estimate's sensor was, for observed = sensor; in the estimate's frame, and moved with the estimate.
+  std::vector<Eigen::Vector3d> sensor_positions = {};
 };
 
 /// The whole comparison as the options say: the scores before, the alignment, the band of small motions, the

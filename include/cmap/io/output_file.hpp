@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
+#include <list>
 #include <string_view>
 
 namespace cmap {
@@ -33,8 +35,19 @@ class OutputFile {
   std::FILE* file_ = nullptr;
 };
 
+/// Files that belong together: all of them appear, or none.
+class OutputFiles {
+ public:
+  /// Writes one more to its end, still under its temporary name. An empty path is a file that was not asked for.
+  void add(const std::filesystem::path& path, const std::function<void(OutputFile&)>& write);
+  void commit();
+
+ private:
+  std::list<OutputFile> files_;
+};
+
 /// Throws the UsageError that writing to `path` would end with, where that is known beforehand: a directory that is
-/// missing, a protected file. For programs that work long before they write.
+/// missing, a protected file. For programs that work long before they write. An empty path is no output.
 void require_writable(const std::filesystem::path& path);
 
 }  // namespace cmap

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cmap/core/point_cloud.hpp"
@@ -38,6 +39,11 @@ struct PointCloudFile {
 /// file, unknown format, malformed or truncated content, a coordinate beyond kMaxCoordinate_m, a float color outside
 /// [0,1], no finite point.
 PointCloudFile read_point_cloud(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// Two files at once, each in a thread of its own. Throws what the first would throw, else the second.
+std::pair<PointCloudFile, PointCloudFile> read_both(const std::filesystem::path& first,
+                                                    const std::filesystem::path& second,
+                                                    const ReadOptions& options = {});
 
 /// A named value per point, written as a float property of its own.
 struct PointField {

@@ -31,6 +31,11 @@ struct NearestPairs {
   /// Color of the point and of its nearest neighbor, RGB in units of 1/255.
   Eigen::Vector3d from_color(std::size_t slot) const { return from.color(slot); }
   Eigen::Vector3d to_color(std::size_t slot) const { return to.color(nearest.slot[slot]); }
+  /// Difference of both colors after a gain per channel, in units of 1/255.
+  Eigen::Vector3d color_difference(std::size_t slot, const Eigen::Vector3d& from_gain,
+                                   const Eigen::Vector3d& to_gain) const {
+    return from_color(slot).cwiseProduct(from_gain) - to_color(slot).cwiseProduct(to_gain);
+  }
   /// Euclidean distance of both colors, unit RGB: 0 to sqrt(3).
   double color_distance(std::size_t slot) const { return (from_color(slot) - to_color(slot)).norm() / 255.0; }
 };

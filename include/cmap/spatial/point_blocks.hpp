@@ -42,6 +42,9 @@ struct PointBlocks {
 /// empty.
 PointBlocks sort_points(const PointCloud& cloud);
 
+/// These slots of a cloud as queries, in this order: no original_index.
+PointBlocks chosen_points(const PointBlocks& points, const Array<std::uint32_t>& slots);
+
 /// The cloud's colors in the slots of `points`. The cloud must have colors and be the one that was sorted.
 Array<ColorBlock> sort_colors(const PointCloud& cloud, const PointBlocks& points);
 

@@ -20,6 +20,8 @@ bool is_choice(const std::string& parameter) {
                                               "bootstrap",
                                               "block",
                                               "observed",
+                                              "observed-range",
+                                              "observed-voxel",
                                               "sensitivity",
                                               "sensitivity-translation",
                                               "sensitivity-rotation"};

@@ -1,8 +1,7 @@
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "report/compare/score_table.hpp"
+#include "report/table_text.hpp"
 
 namespace cmap {
 namespace {
@@ -30,9 +29,7 @@ std::string replaced(std::string_view text, Replacements replacements) {
 }  // namespace
 
 std::string one_line(std::string_view text) {
-  using Json = nlohmann::json;
-  const std::string dumped = Json(std::string(text)).dump(-1, ' ', false, Json::error_handler_t::replace);
-  std::string line = Json::parse(dumped).get<std::string>();
+  std::string line = valid_utf8(text);
   for (char& c : line) {
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
   }

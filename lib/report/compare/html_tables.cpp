@@ -1,42 +1,30 @@
 #include "report/compare/html_tables.hpp"
 
 #include <fmt/format.h>
-#include <openssl/evp.h>
 #include <openssl/sha.h>
 
+#include "report/base64.hpp"
+#include "report/embedded_file.hpp"
 #include "report/table_text.hpp"
 
-// Style and script are files of their own, read by the assembler.
-#define CMAP_EMBED(symbol, path)                                                                \
-  asm(".section .rodata\n" #symbol "_begin:\n.incbin \"" path "\"\n" #symbol "_end:\n.text\n"); \
-  extern "C" {                                                                                  \
-  extern const char symbol##_begin[];                                                           \
-  extern const char symbol##_end[];                                                             \
-  }
-
-CMAP_EMBED(cmap_tables_css, CMAP_TABLES_PAGE "/tables.css")
-CMAP_EMBED(cmap_tables_js, CMAP_TABLES_PAGE "/tables.js")
+CMAP_EMBED(tables_style, CMAP_TABLES_PAGE "/tables.css")
+CMAP_EMBED(tables_script, CMAP_TABLES_PAGE "/tables.js")
 
 namespace cmap {
 namespace {
-
-std::string_view style() { return {cmap_tables_css_begin, cmap_tables_css_end}; }
-std::string_view script() { return {cmap_tables_js_begin, cmap_tables_js_end}; }
 
 /// How a content security policy names an inline script or style.
 std::string policy_hash(std::string_view text) {
   unsigned char digest[SHA256_DIGEST_LENGTH];
   SHA256(reinterpret_cast<const unsigned char*>(text.data()), text.size(), digest);
-  unsigned char base64[4 * ((SHA256_DIGEST_LENGTH + 2) / 3) + 1];
-  EVP_EncodeBlock(base64, digest, SHA256_DIGEST_LENGTH);
-  return fmt::format("'sha256-{}'", reinterpret_cast<const char*>(base64));
+  return fmt::format("'sha256-{}'", base64(digest));
 }
 
 std::string policy() {
   return fmt::format(
       "default-src 'none'; script-src {}; style-src {}; img-src 'self' file: data:; base-uri 'none'; form-action "
       "'none'",
-      policy_hash(script()), policy_hash(style()));
+      policy_hash(tables_script()), policy_hash(tables_style()));
 }
 
 std::string heading_cell(const std::string& text, const char* kind) {
@@ -116,7 +104,7 @@ std::string HtmlPage::finish() const {
       "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n"
       "<style>{}</style>\n</head>\n<body>\n{}<script>{}</script>\n</body>\n</html>\n",
-      policy(), title_, style(), body_, script());
+      policy(), title_, tables_style(), body_, tables_script());
 }
 
 }  // namespace cmap

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <list>
 #include <thread>
 
 #include "cmap/core/error.hpp"
@@ -49,14 +48,6 @@ class FolderLock {
   int descriptor_ = -1;
 };
 
-std::string option_text(const Json& value) {
-  if (value.is_string()) return value.get<std::string>();
-  if (!value.is_array()) return value.dump();
-  std::string text;
-  for (const Json& item : value) text += fmt::format("{}{}", text.empty() ? "" : ",", option_text(item));
-  return text;
-}
-
 /// The command that gives the same report, from the data root.
 std::string command_for(const std::string& reference, const std::string& estimate, const EvaluationOptions& options) {
   std::vector<std::string> words{"cmap_eval", reference, estimate};
@@ -64,7 +55,7 @@ std::string command_for(const std::string& reference, const std::string& estimat
     const Json value = spec.get(options);
     if (value == spec.get(EvaluationOptions{})) continue;
     words.push_back(fmt::format("--{}", spec.name));
-    if (spec.kind != OptionKind::kFlag) words.push_back(option_text(value));
+    if (spec.kind != OptionKind::kFlag) words.push_back(command_line_text(value));
   }
   return shell_command(words);
 }
@@ -145,8 +136,7 @@ Json Runner::key_for(const std::string& reference, const std::string& estimate) 
 }
 
 Evaluated Runner::evaluate_files(const std::string& reference_path, const std::string& estimate_path) const {
-  PointCloudFile reference = read_point_cloud(file(reference_path), {.sha256 = true});
-  PointCloudFile estimate = read_point_cloud(file(estimate_path), {.sha256 = true});
+  auto [reference, estimate] = read_both(file(reference_path), file(estimate_path), {.sha256 = true});
   reference.info.path = reference_path;  // as in the manifest
   estimate.info.path = estimate_path;
   const InputDescription about_reference = describe(reference), about_estimate = describe(estimate);
@@ -277,12 +267,11 @@ void write_documents(const LeaderboardDocuments& documents, const fs::path& outp
   std::vector<std::string> names;
   for (const auto& [name, text] : files) names.push_back(name);
   remove_temporaries(output, names);
-  std::list<OutputFile> outputs;
+  OutputFiles outputs;
   for (const auto& [name, text] : files) {
-    outputs.emplace_back(output / name).write(*text);
-    outputs.back().finish();
+    outputs.add(output / name, [content = text](OutputFile& out) { out.write(*content); });
   }
-  for (OutputFile& file : outputs) file.commit();
+  outputs.commit();
 }
 
 }  // namespace cmap

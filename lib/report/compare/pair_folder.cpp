@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <list>
 
 #include "cmap/core/error.hpp"
 #include "cmap/io/json_text.hpp"
@@ -101,12 +100,9 @@ std::optional<Json> PairFolder::load(const Json& key, std::string& reason) const
 }
 
 void PairFolder::store(const Json& key, const std::vector<File>& files) const {
-  std::list<OutputFile> outputs;
-  for (const File& file : files) {
-    file.write(outputs.emplace_back(folder_ / file.name));
-    outputs.back().finish();
-  }
-  for (OutputFile& output : outputs) output.commit();
+  OutputFiles outputs;
+  for (const File& file : files) outputs.add(folder_ / file.name, file.write);
+  outputs.commit();
   Json record{{"schema", kRecordSchema}, {"key", key}, {"files", Json::object()}};
   for (const File& file : files) record["files"][file.name] = sha256_of_file(folder_ / file.name);
   OutputFile output(folder_ / kRecord);
