@@ -57,6 +57,9 @@ TEST(ImageFile, SaysWhatIsWrong) {
   write_image(gradient(40, 30), folder / "b.png");
   folder.write("c.png", read_bytes(folder / "b.png").substr(0, 20));
   EXPECT_THAT(input_error([&] { read_image(folder / "c.png"); }), HasSubstr("c.png: is no image"));
+  const std::string png = read_bytes(folder / "b.png");
+  folder.write("d.png", png.substr(0, png.size() * 3 / 4));
+  EXPECT_THAT(input_error([&] { read_image(folder / "d.png"); }), HasSubstr("d.png: is no image"));
   write_image(gradient(40, 30), folder / "b.jpg");
   const std::string jpeg = read_bytes(folder / "b.jpg");
   folder.write("c.jpg", jpeg.substr(0, jpeg.size() * 3 / 4));
@@ -65,8 +68,8 @@ TEST(ImageFile, SaysWhatIsWrong) {
   EXPECT_EQ(read_image(folder / "d.jpg").pixels, read_image(folder / "b.jpg").pixels);
   EXPECT_THROW(write_image(gradient(40, 30), folder / "a.tiff"), UsageError);
   EXPECT_THROW(write_image(gradient(40, 30), folder / "no/such/a.png"), UsageError);
-  EXPECT_THROW(write_image({40, 30, {}}, folder / "d.png"), std::invalid_argument);
-  EXPECT_FALSE(std::filesystem::exists(folder / "d.png"));
+  EXPECT_THROW(write_image({40, 30, {}}, folder / "e.png"), std::invalid_argument);
+  EXPECT_FALSE(std::filesystem::exists(folder / "e.png"));
 }
 
 }  // namespace
