@@ -1,0 +1,97 @@
+#include "cmap/recon/post_fusion.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "cmap/core/error.hpp"
+#include "cmap/spatial/nearest.hpp"
+#include "cmap/spatial/voxel_map.hpp"
+
+namespace cmap {
+namespace {
+
+constexpr std::array<std::string_view, 4> kNames{"prefusion", "normal", "paper", "robust"};
+
+Sim3IcpOptions options_for(Registration registration, double voxel_m, double sigma_m) {
+  if (registration == Registration::kNormal) return Sim3IcpOptions::normal(voxel_m);
+  if (registration == Registration::kPaper) return Sim3IcpOptions::paper(voxel_m);
+  return Sim3IcpOptions::robust(voxel_m, sigma_m);
+}
+
+/// How well the session's points lie on the LiDAR's, whatever moved them there: matches within three voxels.
+void measure_fit(const PointCloud& session, const Bvh& lidar, double voxel_m, SessionRegistration& result) {
+  const PointCloud thinned = voxel_thinned(session, voxel_m);
+  const NearestField nearest = find_nearest(lidar, sort_points(thinned));
+  const double sq_gate_m2 = 9.0 * voxel_m * voxel_m;
+  double sum_m2 = 0.0;
+  for (const double sq_dist : nearest.sq_dist) {
+    if (!(sq_dist <= sq_gate_m2)) continue;
+    sum_m2 += sq_dist;
+    ++result.n_matches;
+  }
+  result.overlap = static_cast<double>(result.n_matches) / static_cast<double>(thinned.size());
+  result.rmse_m = result.n_matches > 0 ? std::sqrt(sum_m2 / static_cast<double>(result.n_matches)) : 0.0;
+}
+
+SessionRegistration kept(const Similarity& T_world_session, std::string why) {
+  SessionRegistration result;
+  result.T_world_session = T_world_session;
+  result.accepted = false;
+  result.flags.push_back(std::move(why));
+  return result;
+}
+
+}  // namespace
+
+Registration registration_from_name(std::string_view name) {
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    if (kNames[i] == name) return static_cast<Registration>(i);
+  }
+  throw UsageError(fmt::format("registration \"{}\" is none of prefusion, normal, paper, robust", name));
+}
+
+std::string_view registration_name(Registration registration) { return kNames[static_cast<std::size_t>(registration)]; }
+
+namespace {
+
+/// Without a measure of the fit.
+SessionRegistration moved_session(const SessionCloud& session, const PointCloud& lidar,
+                                  const Similarity& T_world_session, Registration registration, double voxel_m,
+                                  double sigma_m) {
+  const bool with_weights = registration == Registration::kRobust;
+  try {
+    const Sim3Alignment found =
+        sim3_icp(session.cloud, lidar, Eigen::Matrix4d::Identity(), options_for(registration, voxel_m, sigma_m),
+                 with_weights ? std::span<const float>(session.confidence) : std::span<const float>{});
+    SessionRegistration result;
+    result.T_world_session = similarity_from(found.T_dst_src) * T_world_session;
+    result.scale_change = found.scale;
+    result.iterations = found.iterations;
+    result.accepted = found.accepted;
+    result.flags = found.warnings;
+    return result;
+  } catch (const UnsupportedError& error) {
+    return kept(T_world_session, error.what());
+  }
+}
+
+}  // namespace
+
+SessionRegistration register_session(const SessionCloud& session, const PointCloud& lidar,
+                                     const Similarity& T_world_session, Registration registration, double voxel_m,
+                                     double sigma_m) {
+  if (session.cloud.positions.empty()) return kept(T_world_session, "the session has no points");
+  if (lidar.positions.empty()) return kept(T_world_session, "the LiDAR has no points at the session's time");
+  SessionRegistration result;
+  result.T_world_session = T_world_session;
+  if (registration != Registration::kPrefusion) {
+    result = moved_session(session, lidar, T_world_session, registration, voxel_m, sigma_m);
+  }
+  const Similarity step = result.T_world_session * T_world_session.inverse();
+  measure_fit(transformed(session.cloud, step.matrix()), Bvh(sort_points(lidar)), voxel_m, result);
+  return result;
+}
+
+}  // namespace cmap
