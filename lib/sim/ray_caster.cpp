@@ -66,8 +66,7 @@ struct RayCaster::Handles {
   }
 };
 
-RayCaster::RayCaster(std::span<const Eigen::Vector3f> vertices,
-                     std::span<const std::array<std::uint32_t, 3>> triangles)
+RayCaster::RayCaster(std::span<const Eigen::Vector3f> vertices, std::span<const std::array<std::uint32_t, 3>> triangles)
     : handles_(std::make_unique<Handles>()) {
   handles_->device = rtcNewDevice(kDeviceSettings);
   if (handles_->device == nullptr) throw std::runtime_error("Embree does not start");

@@ -47,8 +47,7 @@ double SceneData::plane_distance(std::uint32_t triangle, const Eigen::Vector3d& 
                                  const Eigen::Vector3d& direction) const {
   const Triangle& t = mesh.triangles[triangle];
   const Eigen::Vector3d a = mesh.vertices[t[0]].cast<double>();
-  const Eigen::Vector3d n =
-      (mesh.vertices[t[1]].cast<double>() - a).cross(mesh.vertices[t[2]].cast<double>() - a);
+  const Eigen::Vector3d n = (mesh.vertices[t[1]].cast<double>() - a).cross(mesh.vertices[t[2]].cast<double>() - a);
   return std::max(0.0, n.dot(a - origin) / n.dot(direction));
 }
 
@@ -65,8 +64,8 @@ std::optional<Ray> SceneData::shadow_ray(const SurfacePoint& point) const {
 
 RgbF SceneData::color(const SurfacePoint& point, bool in_shadow) const {
   const Surface& patch = surface(point.triangle);
-  const RgbF texture = mesh.own_color ? mesh.own_color(point.triangle, point.position)
-                                      : texture_color(patch, point.position, point.normal);
+  const RgbF texture =
+      mesh.own_color ? mesh.own_color(point.triangle, point.position) : texture_color(patch, point.position);
   return lit(texture, mesh.lighting, patch, point.position, point.normal, in_shadow);
 }
 

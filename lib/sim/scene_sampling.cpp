@@ -21,8 +21,7 @@ std::vector<double> cumulative_areas(const SceneMesh& mesh) {
   for (std::size_t i = 0; i < sums.size(); ++i) {
     const Triangle& t = mesh.triangles[i];
     const Eigen::Vector3d a = mesh.vertices[t[0]].cast<double>();
-    const Eigen::Vector3d n =
-        (mesh.vertices[t[1]].cast<double>() - a).cross(mesh.vertices[t[2]].cast<double>() - a);
+    const Eigen::Vector3d n = (mesh.vertices[t[1]].cast<double>() - a).cross(mesh.vertices[t[2]].cast<double>() - a);
     sum += 0.5 * n.norm();
     sums[i] = sum;
   }
@@ -58,7 +57,8 @@ PointCloud sample_surface(const Scene& scene, double points_per_m2, std::uint64_
     SceneRandom random(seed * 0x2545f4914f6cdd1dULL + begin);
     for (std::size_t i = begin; i < end; ++i) {
       // One point in each of n equal parts of the area: uniform, and more even than independent draws.
-      const double target = areas.back() * (static_cast<double>(i) + static_cast<double>(random.unit())) / static_cast<double>(n);
+      const double target =
+          areas.back() * (static_cast<double>(i) + static_cast<double>(random.unit())) / static_cast<double>(n);
       const auto found = std::lower_bound(areas.begin(), areas.end() - 1, target) - areas.begin();
       const auto triangle = static_cast<std::uint32_t>(found);
       const float s = random.unit(), t = random.unit();

@@ -9,15 +9,15 @@ namespace cmap {
 
 /// What a surface is made of: selects its texture.
 enum class Material : std::uint8_t {
-  kPlain,      ///< painted, slightly stained
+  kPlain,  ///< painted, slightly stained
   kBrick,
   kPlaster,
-  kStone,      ///< large blocks
-  kWindow,     ///< glass in a frame
+  kStone,   ///< large blocks
+  kWindow,  ///< glass in a frame
   kDoor,
   kRoofTiles,
   kAsphalt,
-  kPaving,     ///< slabs
+  kPaving,  ///< slabs
   kGrass,
   kGravel,
   kLeaves,
@@ -28,11 +28,11 @@ enum class Material : std::uint8_t {
   kCarpet,
   kFloorTiles,
   kCeiling,
-  kPicture,    ///< a poster or painting that fills the surface
+  kPicture,  ///< a poster or painting that fills the surface
   kBooks,
   kScreen,
   kFabric,
-  kCrop,       ///< rows of plants
+  kCrop,  ///< rows of plants
   kWater,
 };
 
@@ -48,13 +48,13 @@ struct Surface {
   Material material = Material::kPlain;
   Eigen::Vector3f origin = Eigen::Vector3f::Zero();  ///< (u, v) = (0, 0); of leaves: the crown's center
   Eigen::Vector3f u_axis = Eigen::Vector3f::UnitX(), v_axis = Eigen::Vector3f::UnitY();  ///< unit, in the surface
-  float width = 1.0F, height = 1.0F;                 ///< of the patch that kWindow, kDoor, kPicture fill, m
+  float width = 1.0F, height = 1.0F;  ///< of the patch that kWindow, kDoor, kPicture fill, m
   RgbF base{0.6F, 0.6F, 0.6F}, accent{0.4F, 0.4F, 0.4F};
   std::uint32_t seed = 0;
 };
 
 /// Reflectance of the surface in [0,1] before light falls on it.
-RgbF texture_color(const Surface& surface, const Eigen::Vector3f& point, const Eigen::Vector3f& normal);
+RgbF texture_color(const Surface& surface, const Eigen::Vector3f& point);
 
 /// Of near infrared light, 0 for water.
 float reflectivity(const Surface& surface, const Eigen::Vector3f& point);

@@ -15,7 +15,7 @@ namespace cmap {
 
 /// Where a ray meets a scene first, without its color: what a LiDAR needs.
 struct SurfaceHit {
-  double distance_m = 0.0;  ///< along the ray, exact to 1e-4 m
+  double distance_m = 0.0;                           ///< along the ray, exact to 1e-4 m
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< unit, towards the ray's origin; world frame
   float reflectivity = 0.0F;  ///< of near infrared light, [0,1]; 0: water, from which no LiDAR gets a return
 };
@@ -75,13 +75,13 @@ class Scene {
 /// Streets cross at right angles along x and y; the scene is centered on the origin, z up.
 struct TownOptions {
   std::uint64_t seed = 1;
-  int blocks_x = 3, blocks_y = 3;   ///< blocks of houses, >= 3; the loop goes around the one in the middle
-  double block_x_m = 64.0;          ///< size of a block, from sidewalk to sidewalk, >= 30
+  int blocks_x = 3, blocks_y = 3;  ///< blocks of houses, >= 3; the loop goes around the one in the middle
+  double block_x_m = 64.0;         ///< size of a block, from sidewalk to sidewalk, >= 30
   double block_y_m = 48.0;
-  double street_width_m = 13.0;     ///< between blocks, with both sidewalks, >= 8
-  double undulation_m = 0.8;        ///< amplitude of the ground's hills, some 80 m long, >= 0
-  double trees_per_100m = 7.0;      ///< along each side of a street, >= 0
-  double cars_per_100m = 7.0;       ///< parked, along each side of a street, >= 0
+  double street_width_m = 13.0;  ///< between blocks, with both sidewalks, >= 8
+  double undulation_m = 0.8;     ///< amplitude of the ground's hills, some 80 m long, >= 0
+  double trees_per_100m = 7.0;   ///< along each side of a street, >= 0
+  double cars_per_100m = 7.0;    ///< parked, along each side of a street, >= 0
 };
 
 /// One floor of an office building: a corridor around a core, rooms with furniture on both sides, doors, a ceiling.
@@ -110,8 +110,8 @@ Scene make_indoor(const IndoorOptions& options);
 Scene make_aerial(const AerialOptions& options);
 
 /// A triangle mesh as the scene: PLY (any encoding, polygons are split into fans) with vertex colors, or OBJ with
-/// colored vertices or a material's image texture (map_Kd, then Kd); lit gray where there is no color, else the colors as
-/// they are. z is up. Throws InputError naming file and line (byte in binary data).
+/// colored vertices or a material's image texture (map_Kd, then Kd); lit gray where there is no color, else the colors
+/// as they are. z is up. Throws InputError naming file and line (byte in binary data).
 Scene read_mesh_scene(const std::filesystem::path& path);
 
 /// Points drawn uniformly over the area of all surfaces, with their colors (8 bit): round(area * density) points.
