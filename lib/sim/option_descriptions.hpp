@@ -5,6 +5,7 @@
 #include "cmap/sim/imu.hpp"
 #include "cmap/sim/lidar.hpp"
 #include "cmap/sim/path.hpp"
+#include "cmap/sim/predictions.hpp"
 #include "sim/option_fields.hpp"
 
 /// Names and ranges of all options of the sensors: `Fields` is a visitor of option_fields.hpp, `Options` may be const.
@@ -60,6 +61,39 @@ void describe(Fields& f, FieldsOf<Fields, LidarOptions>& o) {
   f.field("detection_steepness", o.detection_steepness, kPositive);
   f.field("lost_fraction", o.lost_fraction, kFraction);
   f.field("lossless", o.lossless);
+}
+
+template <class Fields>
+void describe(Fields& f, FieldsOf<Fields, PredictionOptions>& o) {
+  f.field("session_length", o.session_length, NumberRange{1, 1e6});
+  f.field("session_overlap", o.session_overlap, NumberRange{0, 1e6});
+  f.field("image_stride", o.image_stride, NumberRange{1, 1e6});
+  f.field("width_px", o.width_px, NumberRange{14, 1e4});
+  f.field("supersampling", o.supersampling, NumberRange{1, 8});
+  f.field("unit_m", o.unit_m, kPositive);
+  f.field("unit_factor", o.unit_factor, NumberRange{1.0, 1e6});
+  f.field("depth_noise_fraction", o.depth_noise_fraction, kNotNegative);
+  f.field("depth_bias_fraction", o.depth_bias_fraction, kNotNegative);
+  f.field("depth_bias_range_m", o.depth_bias_range_m, kPositive);
+  f.field("depth_bias_size_px", o.depth_bias_size_px, kPositive);
+  f.field("edge_fraction", o.edge_fraction, kPositive);
+  f.field("floater_fraction", o.floater_fraction, kFraction);
+  f.field("max_depth_m", o.max_depth_m, kPositive);
+  f.field("sky_depth_m", o.sky_depth_m, kPositive);
+  f.field("pose_noise_m", o.pose_noise_m, kNotNegative);
+  f.field("pose_noise_deg", o.pose_noise_deg, kNotNegative);
+  f.field("pose_scale_fraction", o.pose_scale_fraction, kNotNegative);
+  f.field("pose_drift_fraction", o.pose_drift_fraction, kNotNegative);
+  f.field("pose_drift_deg_per_frame", o.pose_drift_deg_per_frame, kNotNegative);
+  f.field("focal_noise_fraction", o.focal_noise_fraction, kNotNegative);
+  f.field("outlier_sessions", o.outlier_sessions, NumberRange{0, 1e6});
+  f.field("outlier_fraction", o.outlier_fraction, kFraction);
+  f.field("outlier_stretch", o.outlier_stretch, kPositive);
+  f.field("confidence_peak", o.confidence_peak, NumberRange{.low = 1.0});
+  f.field("confidence_half_error_m", o.confidence_half_error_m, kPositive);
+  f.field("confidence_insight", o.confidence_insight, kFraction);
+  f.field("confidence_noise", o.confidence_noise, kNotNegative);
+  f.field("world_points", o.world_points);
 }
 
 /// Throws UsageError "where: field: value and rule" for the first value out of its range.
