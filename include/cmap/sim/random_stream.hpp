@@ -36,6 +36,9 @@ enum RandomPurpose : std::uint64_t {
   kRandomDepthPixel,
   kRandomPointField,
   kRandomPointPixel,
+  kRandomLioDrift,
+  kRandomExposure,
+  kRandomImagePixel,
 };
 
 }  // namespace cmap
