@@ -3,8 +3,10 @@
 #include <array>
 #include <cmath>
 
+#include "cmap/io/output_file.hpp"
 #include "io/line_reader.hpp"
 #include "io/number_text.hpp"
+#include "io/rotation_check.hpp"
 #include "io/text_layout.hpp"
 
 namespace cmap {
@@ -21,19 +23,81 @@ StampedPose pose_of(const LineReader& lines, const std::array<double, 8>& v) {
   return pose;
 }
 
+/// What a line holds, for messages.
+struct LineKind {
+  std::string_view name, order;
+};
+
 /// False on a line without numbers.
-bool parse_line(const LineReader& lines, std::string_view line, std::array<double, 8>& values) {
+template <std::size_t n_values>
+bool parse_line(const LineReader& lines, std::string_view line, const LineKind& kind,
+                std::array<double, n_values>& values) {
   line = line.substr(0, line.find('#'));
   std::size_t n = 0;
   for (std::string_view token; next_column(line, token); ++n) {
     double value = 0.0;
     if (!parse_number(token, value)) lines.fail("'{}' is not a number", token.substr(0, 40));
     if (!std::isfinite(value)) lines.fail("'{}' is not finite", token.substr(0, 40));
-    if (n == values.size()) lines.fail("more than the 8 numbers of a pose: time x y z qx qy qz qw");
+    if (n == n_values) lines.fail("more than the {} numbers of {}: {}", n_values, kind.name, kind.order);
     values[n] = value;
   }
-  if (n != 0 && n != values.size()) lines.fail("{} numbers; a pose has 8: time x y z qx qy qz qw", n);
+  if (n != 0 && n != n_values) lines.fail("{} numbers; {} has {}: {}", n, kind.name, n_values, kind.order);
   return n != 0;
+}
+
+void require_later(const LineReader& lines, double time_s, double last_s) {
+  if (!(time_s > last_s)) lines.fail("time {} s is not after the {} s before it", time_s, last_s);
+}
+
+std::vector<double> read_times(const std::filesystem::path& path) {
+  ByteSource source(path);
+  LineReader lines(source);
+  std::vector<double> times_s;
+  std::string_view line;
+  std::array<double, 1> time_s{};
+  while (lines.next(line)) {
+    if (!parse_line(lines, line, {"a line", "seconds"}, time_s)) continue;
+    if (!times_s.empty()) require_later(lines, time_s[0], times_s.back());
+    times_s.push_back(time_s[0]);
+  }
+  return times_s;
+}
+
+StampedPose pose_of_matrix(const LineReader& lines, const double* rows) {
+  const Eigen::Matrix<double, 3, 4> matrix = Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(rows);
+  const double deviation = deviation_from_rotation(matrix.leftCols<3>());
+  if (!(deviation <= kRotationTolerance)) {
+    lines.fail("the matrix deviates by {:g} from a rotation; {:g} accepted", deviation, kRotationTolerance);
+  }
+  return {0.0, matrix.col(3), Eigen::Quaterniond(nearest_rotation(matrix.leftCols<3>()))};
+}
+
+/// Poses as matrices of 3 or 4 rows; their times are still missing.
+template <std::size_t n_values>
+Trajectory read_matrices(const std::filesystem::path& path) {
+  ByteSource source(path);
+  LineReader lines(source);
+  Trajectory trajectory;
+  std::string_view line;
+  std::array<double, n_values> values{};
+  while (lines.next(line)) {
+    if (!parse_line(lines, line, {"a pose", "the rows of its matrix"}, values)) continue;
+    if constexpr (n_values == 16) {
+      const Eigen::Map<const Eigen::RowVector4d> last(values.data() + 12);
+      if (last != Eigen::RowVector4d(0, 0, 0, 1)) lines.fail("the last row of the matrix is not 0 0 0 1");
+    }
+    trajectory.push_back(pose_of_matrix(lines, values.data()));
+  }
+  if (trajectory.empty()) source.fail("no pose in the file");
+  return trajectory;
+}
+
+void set_times(Trajectory& trajectory, const std::filesystem::path& path) {
+  const std::vector<double> times_s = read_times(path);
+  if (times_s.size() != trajectory.size()) {
+    throw InputError(fmt::format("{}: {} times for {} poses", path.string(), times_s.size(), trajectory.size()));
+  }
+  for (std::size_t i = 0; i < times_s.size(); ++i) trajectory[i].time_s = times_s[i];
 }
 
 }  // namespace
@@ -45,15 +109,40 @@ Trajectory read_tum_trajectory(const std::filesystem::path& path) {
   std::string_view line;
   std::array<double, 8> values{};
   while (lines.next(line)) {
-    if (!parse_line(lines, line, values)) continue;
+    if (!parse_line(lines, line, {"a pose", "time x y z qx qy qz qw"}, values)) continue;
     const StampedPose pose = pose_of(lines, values);
-    if (!trajectory.empty() && !(pose.time_s > trajectory.back().time_s)) {
-      lines.fail("time {} s is not after the {} s before it", pose.time_s, trajectory.back().time_s);
-    }
+    if (!trajectory.empty()) require_later(lines, pose.time_s, trajectory.back().time_s);
     trajectory.push_back(pose);
   }
   if (trajectory.empty()) source.fail("no pose in the file");
   return trajectory;
+}
+
+Trajectory read_kitti_trajectory(const std::filesystem::path& poses, const std::filesystem::path& times) {
+  Trajectory trajectory = read_matrices<12>(poses);
+  set_times(trajectory, times);
+  return trajectory;
+}
+
+Trajectory read_camera_poses(const std::filesystem::path& poses, const std::optional<std::filesystem::path>& times) {
+  Trajectory trajectory = read_matrices<16>(poses);
+  if (times) {
+    set_times(trajectory, *times);
+  } else {
+    for (std::size_t i = 0; i < trajectory.size(); ++i) trajectory[i].time_s = static_cast<double>(i);
+  }
+  return trajectory;
+}
+
+void write_tum_trajectory(const Trajectory& trajectory, const std::filesystem::path& path) {
+  OutputFile file(path);
+  file.write("# timestamp_s tx ty tz qx qy qz qw\n");
+  for (const StampedPose& pose : trajectory) {
+    const auto& p = pose.position;
+    const auto& q = pose.rotation;
+    file.write(fmt::format("{} {} {} {} {} {} {} {}\n", pose.time_s, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()));
+  }
+  file.commit();
 }
 
 }  // namespace cmap

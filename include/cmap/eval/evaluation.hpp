@@ -10,6 +10,7 @@
 
 #include "cmap/align/alignment.hpp"
 #include "cmap/core/progress.hpp"
+#include "cmap/core/warning.hpp"
 #include "cmap/eval/metric_catalog.hpp"
 #include "cmap/eval/options.hpp"
 #include "cmap/metrics/local_color_recall.hpp"
@@ -22,11 +23,6 @@ namespace cmap {
 struct MetricRecord {
   const MetricInfo* info;
   nlohmann::ordered_json fields;
-};
-
-struct Warning {
-  std::string id;
-  std::string message;
 };
 
 /// What the evaluation of one pair found.

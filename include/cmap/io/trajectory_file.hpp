@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 namespace cmap {
@@ -20,5 +21,20 @@ using Trajectory = std::vector<StampedPose>;
 /// length are normalized. Throws InputError naming file, line and reason: not eight finite numbers, a quaternion of
 /// zero, a time that is not after the one before, no pose at all.
 Trajectory read_tum_trajectory(const std::filesystem::path& path);
+
+/// Reads KITTI poses, 12 numbers a line: the upper rows of T_world_body, row-major; and their times from a file with
+/// one number of seconds a line. Blanks or commas, `#` comments. Rotations are projected to SO(3). Throws InputError
+/// naming file, line and reason: another number of numbers, one that is not finite, no rotation (beyond 1e-3), another
+/// number of times than poses, times that do not increase, no pose.
+Trajectory read_kitti_trajectory(const std::filesystem::path& poses, const std::filesystem::path& times);
+
+/// Reads VGGT-Long's camera_poses.txt, 16 numbers a line: the camera-to-world matrix, row-major, in the unit of the
+/// first chunk. Without a file of times, the time of a pose is its index in seconds. Throws InputError likewise.
+Trajectory read_camera_poses(const std::filesystem::path& poses,
+                             const std::optional<std::filesystem::path>& times = std::nullopt);
+
+/// Writes a TUM file whose numbers read back as they were. The file appears under its name only when complete. Throws
+/// UsageError if it cannot be written.
+void write_tum_trajectory(const Trajectory& trajectory, const std::filesystem::path& path);
 
 }  // namespace cmap

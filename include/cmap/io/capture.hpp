@@ -1,0 +1,89 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cmap/core/camera_model.hpp"
+#include "cmap/core/warning.hpp"
+#include "cmap/io/trajectory_file.hpp"
+
+namespace cmap {
+
+struct LidarScan;
+struct SessionPredictions;
+
+/// A file that belongs to a time; the path is ready to open.
+struct StampedFile {
+  double time_s = 0.0;
+  std::filesystem::path path;
+};
+
+/// One measurement of an IMU, in its own frame.
+struct ImuSample {
+  double time_s = 0.0;
+  Eigen::Vector3d angular_rate_radps;
+  Eigen::Vector3d specific_force_mps2;  ///< at rest: 9.8 m/s^2 upward
+};
+
+/// What capture.json says. T_a_b maps coordinates in b to a.
+struct CaptureCalibration {
+  CameraModel camera;
+  Eigen::Isometry3d T_imu_lidar = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d T_lidar_camera = Eigen::Isometry3d::Identity();
+  double image_time_offset_s = 0.0;  ///< recorded time + offset = time in the clock of the LiDAR
+  double imu_time_offset_s = 0.0;
+};
+
+/// A capture (FORMATS, "A capture"), opened: calibration, tables, IMU and poses are read and checked; images, scans
+/// and predictions are files that are there, read when they are needed.
+struct Capture {
+  std::filesystem::path folder;
+  CaptureCalibration calibration;
+  std::vector<StampedFile> images, scans;       ///< by increasing time, offsets applied
+  std::vector<ImuSample> imu;                   ///< by increasing time, offset applied; empty: none
+  Trajectory lio;                               ///< world_T_imu; empty: none
+  std::vector<std::filesystem::path> sessions;  ///< for read_session_predictions, by name; empty: none
+  std::vector<Warning> warnings;                ///< what was decided on the user's behalf
+};
+
+/// Opens a capture. Rotations that deviate from one (largest entry of R^T R - I) are projected to SO(3), with a warning
+/// above 1e-3. Throws InputError naming file, place and reason: a file that is missing (images and scans of the tables
+/// too), an unknown or missing key, a matrix that is no rotation and translation (det R <= 0, or beyond 0.2), times
+/// that do not increase. Thread-safe.
+Capture open_capture(const std::filesystem::path& folder);
+
+/// Writes a capture, which appears under its name only when commit() says it is complete: until then everything goes to
+/// `<folder>.partial`, which open_capture does not take for a capture. Neither may exist before. Images and scans come
+/// by increasing time, each as soon as there is one; the rest once, in any order. Times are those of Capture: where the
+/// calibration has an offset, what is recorded is the time without it. Not thread-safe. Every failure to write is a
+/// UsageError that names path and reason; wrong use (times that do not increase) std::invalid_argument.
+class CaptureWriter {
+ public:
+  CaptureWriter(const std::filesystem::path& folder, const CaptureCalibration& calibration);
+  ~CaptureWriter();
+  CaptureWriter(const CaptureWriter&) = delete;
+  CaptureWriter& operator=(const CaptureWriter&) = delete;
+
+  /// Lists an image and says where the caller must write it; `extension` is ".jpg" or ".png".
+  std::filesystem::path add_image(double time_s, const std::string& extension);
+  /// Lists a scan of its timestamp_s and writes it.
+  void add_scan(const LidarScan& scan);
+  void write_imu(std::span<const ImuSample> samples);
+  void write_lio(const Trajectory& world_T_imu);
+  /// Writes predictions/session_0000, session_0001, ...
+  void add_session(const SessionPredictions& session);
+  /// A folder of this name in the capture ("truth"), made if need be, for files of the caller.
+  std::filesystem::path subfolder(const std::string& name);
+  /// Throws UsageError if an image was listed and not written.
+  void commit();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace cmap

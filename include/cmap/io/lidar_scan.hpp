@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+
+#include "cmap/core/array.hpp"
+
+namespace cmap {
+
+/// One scan, every point in the LiDAR frame at the point's own time. Optional arrays are as long as positions or empty.
+struct LidarScan {
+  double timestamp_s = 0.0;
+  Array<Eigen::Vector3f> positions;  ///< m
+  Array<float> intensity;            ///< as the sensor gives it
+  Array<float> time_s;               ///< from timestamp_s; empty: motion-compensated at timestamp_s
+  Array<std::uint16_t> ring;         ///< channel of the sensor
+};
+
+/// Reads a PCD file (ascii, binary, compressed) with x y z and, by these names, intensity, time and ring; other fields
+/// are stepped over. Points whose position, time or intensity is not finite are dropped; none left is an empty scan, as
+/// a sensor that saw only sky gives it. Thread-safe. Throws InputError naming file, place and reason: malformed or
+/// truncated, no x y z, a time further than 60 s from the scan's (nanoseconds?), a ring that fits no 16 bits.
+LidarScan read_lidar_scan(const std::filesystem::path& path, double timestamp_s);
+
+/// Writes a binary PCD file with the arrays that the scan has. Throws UsageError if it cannot be written,
+/// std::invalid_argument if an array has another length.
+void write_lidar_scan(const LidarScan& scan, const std::filesystem::path& path);
+
+}  // namespace cmap

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "cmap/io/capture.hpp"
+
+namespace cmap {
+
+/// What capture.json holds.
+struct CaptureDescription {
+  CaptureCalibration calibration;
+  double acceleration_unit_mps2 = 1.0;
+  std::vector<Warning> warnings;
+};
+
+/// Reads the text of a capture.json; `source` names it in messages. Throws InputError as open_capture does.
+CaptureDescription parse_capture_json(const std::string& text, const std::string& source);
+
+/// The text that reads back as the same calibration; accelerations in m/s^2.
+std::string capture_json(const CaptureCalibration& calibration);
+
+}  // namespace cmap

@@ -1,0 +1,70 @@
+#include "io/csv_table.hpp"
+
+#include <cmath>
+
+#include "io/number_text.hpp"
+
+namespace cmap {
+namespace {
+
+std::string_view without_blanks(std::string_view text) {
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+}  // namespace
+
+CsvTable::CsvTable(ByteSource& source, std::initializer_list<std::string_view> columns)
+    : lines_(source), columns_(columns) {
+  std::string_view line;
+  if (lines_.next(line)) split(line);
+  if (cells_ != columns_) lines_.fail("the columns {} expected", fmt::join(columns_, ","));
+}
+
+void CsvTable::split(std::string_view line) {
+  cells_.clear();
+  for (;;) {
+    const std::size_t comma = line.find(',');
+    cells_.push_back(without_blanks(line.substr(0, comma)));
+    if (comma == std::string_view::npos) return;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+bool CsvTable::next() {
+  std::string_view line;
+  do {
+    if (!lines_.next(line)) return false;
+  } while (without_blanks(line).empty());
+  split(line);
+  if (cells_.size() != columns_.size()) {
+    lines_.fail("{} cells; the {} of {} expected", cells_.size(), columns_.size(), fmt::join(columns_, ","));
+  }
+  return true;
+}
+
+double CsvTable::number(std::size_t column) const {
+  double value = 0.0;
+  if (!parse_number(cells_[column], value)) {
+    lines_.fail("{} is '{}', not a number", columns_[column], cells_[column].substr(0, 40));
+  }
+  if (!std::isfinite(value)) lines_.fail("{} is '{}', not finite", columns_[column], cells_[column]);
+  return value;
+}
+
+std::uint64_t CsvTable::whole_number(std::size_t column) const {
+  unsigned long long value = 0;
+  if (!parse_number(cells_[column], value)) {
+    lines_.fail("{} is '{}', not a whole number", columns_[column], cells_[column].substr(0, 40));
+  }
+  return value;
+}
+
+void IncreasingTimes::add(const LineReader& lines, double time_s) {
+  if (any_ && !(time_s > last_s_)) lines.fail("time {} s is not after the {} s before it", time_s, last_s_);
+  any_ = true;
+  last_s_ = time_s;
+}
+
+}  // namespace cmap

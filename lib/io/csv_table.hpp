@@ -1,0 +1,43 @@
+#pragma once
+
+#include <initializer_list>
+#include <string_view>
+#include <vector>
+
+#include "io/line_reader.hpp"
+
+namespace cmap {
+
+/// The rows of a table with a header line, cells separated by commas, blanks around them dropped; nothing is quoted.
+class CsvTable {
+ public:
+  /// Reads the header line. Throws InputError unless it names these columns in this order.
+  CsvTable(ByteSource& source, std::initializer_list<std::string_view> columns);
+
+  /// The next row that is not blank; false at the end. Throws InputError for another number of cells.
+  bool next();
+  std::string_view cell(std::size_t column) const { return cells_[column]; }
+  /// The cell as a finite number, or as a whole one; throws InputError naming line and column for anything else.
+  double number(std::size_t column) const;
+  std::uint64_t whole_number(std::size_t column) const;
+  const LineReader& lines() const { return lines_; }
+
+ private:
+  void split(std::string_view line);
+
+  LineReader lines_;
+  std::vector<std::string_view> columns_;
+  std::vector<std::string_view> cells_;
+};
+
+/// Throws InputError unless each time comes after the one before it.
+class IncreasingTimes {
+ public:
+  void add(const LineReader& lines, double time_s);
+
+ private:
+  bool any_ = false;
+  double last_s_ = 0.0;
+};
+
+}  // namespace cmap

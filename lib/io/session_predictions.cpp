@@ -1,0 +1,139 @@
+#include "cmap/io/session_predictions.hpp"
+
+#include "io/csv_table.hpp"
+#include "io/input_json.hpp"
+#include "io/number_text.hpp"
+#include "io/session_arrays.hpp"
+
+namespace cmap {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Where the parts of a session lie.
+struct SessionFiles {
+  fs::path arrays;  ///< folder or NPZ file
+  fs::path frames;  ///< CSV
+  fs::path meta;    ///< empty: an NPZ file has none
+};
+
+SessionFiles find_files(const fs::path& path) {
+  if (!fs::exists(path)) throw InputError(path.string() + ": no such file or folder; a session's predictions expected");
+  const fs::path inside = path / "predictions.npz";
+  const bool folder = fs::is_directory(path);
+  if (folder && (fs::exists(path / "depth.npy") || !fs::exists(inside))) {
+    return {path, path / "frames.csv", path / "meta.json"};
+  }
+  const fs::path npz = folder ? inside : path;
+  const fs::path own_frames = npz.parent_path() / (npz.stem().string() + ".frames.csv");
+  return {npz, fs::exists(own_frames) ? own_frames : npz.parent_path() / "frames.csv", {}};
+}
+
+int original_size(const CsvTable& table, std::size_t column) {
+  constexpr std::uint64_t kMost = 1 << 20;
+  const std::uint64_t size = table.whole_number(column);
+  if (size == 0 || size > kMost) table.lines().fail("an image side of {} pixels", size);
+  return static_cast<int>(size);
+}
+
+std::vector<PredictionFrame> read_frames(const fs::path& path) {
+  if (!fs::exists(path)) {
+    throw InputError(path.string() + ": no such file; the times of the session's frames expected there");
+  }
+  ByteSource source(path);
+  CsvTable table(source, {"index", "timestamp_s", "image_name", "orig_w", "orig_h"});
+  IncreasingTimes times;
+  std::vector<PredictionFrame> frames;
+  while (table.next()) {
+    if (table.whole_number(0) != frames.size())
+      table.lines().fail("index {}; {} expected", table.cell(0), frames.size());
+    times.add(table.lines(), table.number(1));
+    frames.push_back(
+        {frames.size(), table.number(1), std::string(table.cell(2)), original_size(table, 3), original_size(table, 4)});
+  }
+  return frames;
+}
+
+void require_equal(const Json& meta, const char* key, std::size_t expected) {
+  if (!meta.contains(key)) throw UsageError(fmt::format("key \"{}\" is missing", key));
+  if (static_cast<std::size_t>(whole_number(meta[key], key)) != expected) {
+    throw UsageError(fmt::format("{} is {}, but that of the depth is {}", key, meta[key].dump(), expected));
+  }
+}
+
+void require_convention(const Json& meta, const char* key, std::initializer_list<std::string_view> known) {
+  if (!meta.contains(key)) throw UsageError(fmt::format("key \"{}\" is missing", key));
+  for (const std::string_view value : known) {
+    if (meta[key] == value) return;
+  }
+  throw UsageError(fmt::format("{} is {}; \"{}\" expected", key, meta[key].dump(), *known.begin()));
+}
+
+/// Other keys say where a session comes from, and are not read.
+void check_meta(const fs::path& path, const SessionPredictions& session, std::size_t frame_count) {
+  read_input_json_file(path, "the description of a session", [&](const Json& meta) {
+    if (!meta.is_object()) throw UsageError("an object expected");
+    if (!meta.contains("version") || meta["version"] != 1) throw UsageError("\"version\": 1 expected");
+    require_equal(meta, "frames", frame_count);
+    require_equal(meta, "width", static_cast<std::size_t>(session.width));
+    require_equal(meta, "height", static_cast<std::size_t>(session.height));
+    require_convention(meta, "pose_convention", {"opencv_cam_from_world"});
+    require_convention(meta, "depth_type", {"z"});
+    require_convention(meta, "intrinsics_pixel_origin", {"integer_center", "integer_centre"});
+  });
+}
+
+}  // namespace
+
+SessionPredictions read_session_predictions(const fs::path& folder_or_npz) {
+  const SessionFiles files = find_files(folder_or_npz);
+  const ArrayStore store(files.arrays);
+  SessionPredictions session;
+  std::size_t frame_count = 0;
+  read_depth(store, session, frame_count);
+  if (!files.meta.empty()) check_meta(files.meta, session, frame_count);
+  session.frames = read_frames(files.frames);
+  if (session.frames.size() != frame_count) {
+    throw InputError(
+        fmt::format("{}: {} frames, but {} in the arrays", files.frames.string(), session.frames.size(), frame_count));
+  }
+  read_images(store, session, frame_count);
+  read_world_points(store, session, frame_count);
+  read_cameras(store, session, frame_count);
+  for (const std::string& name : store.python_members()) {
+    session.warnings.push_back({"skipped_member", fmt::format("{}: {} holds pickled Python objects and was skipped",
+                                                              files.arrays.string(), name)});
+  }
+  return session;
+}
+
+PointMap read_point_map(const fs::path& npz) {
+  PointMap map;
+  const std::string stamp = npz.stem().string();
+  if (!parse_number(stamp, map.time_s) || !std::isfinite(map.time_s)) {
+    throw InputError(fmt::format("{}: the name is no time stamp", npz.string()));
+  }
+  const ArrayStore store(npz);
+  const NpyArray points = store.read("pointcloud"), mask = store.read("mask");
+  std::vector<std::uint64_t> shape = points.shape();
+  if (shape.size() != 2 && shape.size() != 3) require_shape(points, {0, 0, 3});
+  if (shape.back() != 3 || points.size() == 0)
+    require_shape(points, shape.size() == 3 ? std::vector<std::uint64_t>{0, 0, 3} : std::vector<std::uint64_t>{0, 3});
+  shape.pop_back();
+  require_shape(mask, shape);
+  constexpr std::uint64_t kMost = 1U << 30;
+  if (shape.back() > kMost || shape.front() > kMost) points.fail("has the absurd shape {}", shape_text(points.shape()));
+  map.width = static_cast<int>(shape.back());
+  map.height = shape.size() == 2 ? static_cast<int>(shape.front()) : 1;
+  map.mask = mask.to_bytes();
+  const Array<float> values = points.to_floats();
+  map.points.resize(map.mask.size());
+  for (std::size_t i = 0; i < map.mask.size(); ++i) {
+    map.points[i] = Eigen::Map<const Eigen::Vector3f>(values.data() + 3 * i);
+    map.mask[i] = map.mask[i] != 0 && map.points[i].allFinite() ? 1 : 0;
+  }
+  return map;
+}
+
+}  // namespace cmap
