@@ -57,6 +57,14 @@ else()
   set(CMAP_WITH_GL OFF)
 endif()
 
+# Photographs of a capture: optional.
+find_library(CMAP_OPENCV_IMGCODECS_LIBRARY opencv_imgcodecs)
+if(CMAP_OPENCV_INCLUDE_DIR AND CMAP_OPENCV_CORE_LIBRARY AND CMAP_OPENCV_IMGPROC_LIBRARY AND CMAP_OPENCV_IMGCODECS_LIBRARY)
+  set(CMAP_WITH_IMAGES ON)
+else()
+  set(CMAP_WITH_IMAGES OFF)
+endif()
+
 # Global registration: optional. PCL's own CMake files would bring in VTK and all its other modules.
 find_path(CMAP_PCL_INCLUDE_DIR pcl/features/fpfh_omp.h PATH_SUFFIXES pcl-1.15 pcl-1.14 pcl-1.13 pcl-1.12)
 set(CMAP_PCL_LIBRARIES)
@@ -81,6 +89,7 @@ function(cmap_print_summary)
   message(STATUS "cmap ${PROJECT_VERSION}, ${CMAKE_BUILD_TYPE}")
   message(STATUS "  feature      state  to change it")
   message(STATUS "  figures      ${CMAP_WITH_RENDER}     apt-get install libvtk9-dev libopencv-imgproc-dev fonts-dejavu-core")
+  message(STATUS "  photographs  ${CMAP_WITH_IMAGES}     apt-get install libopencv-imgcodecs-dev")
   message(STATUS "  OpenGL       ${CMAP_WITH_GL}     apt-get install libvtk9-dev libegl-dev libgl-dev libx11-dev")
   message(STATUS "  global align ${CMAP_WITH_PCL}     apt-get install libpcl-dev")
   message(STATUS "  simulator    ${CMAP_WITH_SIM}     apt-get install libembree-dev (version 3)")

@@ -10,13 +10,13 @@ packages=(
   g++ cmake ninja-build
   libeigen3-dev libfmt-dev libtbb-dev libssl-dev nlohmann-json3-dev libcli11-dev
   zlib1g-dev liblzf-dev liblz4-dev libflann-dev
-  libvtk9-dev libopencv-imgproc-dev fonts-dejavu-core
+  libvtk9-dev libopencv-imgproc-dev libopencv-imgcodecs-dev fonts-dejavu-core
   libegl-dev libgl-dev libx11-dev libpcl-dev libembree-dev
 )
 for argument in "$@"; do
   case "$argument" in
     --tests)
-      packages+=(libgtest-dev libgmock-dev python3 python3-numpy python3-scipy python3-jsonschema ffmpeg chromium
+      packages+=(libgtest-dev libgmock-dev python3 python3-numpy python3-scipy python3-jsonschema libopencv-calib3d-dev ffmpeg chromium
         libgl1-mesa-dri libegl-mesa0 xvfb xdotool)
       # Node's own packages bring npm with them and exclude Debian's.
       command -v npm >/dev/null || packages+=(nodejs npm)

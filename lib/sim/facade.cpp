@@ -263,6 +263,7 @@ HouseStyle random_house_style(SceneRandom& random, int storeys) {
   style.roof.base =
       pick(random, {{0.62F, 0.29F, 0.21F}, {0.50F, 0.27F, 0.22F}, {0.36F, 0.37F, 0.41F}, {0.55F, 0.40F, 0.30F}});
   style.frame.base = pick(random, {{0.90F, 0.90F, 0.88F}, {0.35F, 0.25F, 0.20F}, {0.25F, 0.33F, 0.30F}});
+  style.frame.accent = {0.38F, 0.44F, 0.52F};  // of the glass
   style.door.material = Material::kDoor;
   style.door.base =
       pick(random, {{0.45F, 0.28F, 0.18F}, {0.18F, 0.30F, 0.24F}, {0.55F, 0.16F, 0.14F}, {0.20F, 0.26F, 0.42F}});

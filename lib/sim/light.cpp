@@ -35,7 +35,8 @@ RgbF lit_by_sun(const RgbF& texture, const Eigen::Vector3f& normal, bool in_shad
 
 RgbF lit_in_room(const RgbF& texture, const Eigen::Vector3f& p, const Eigen::Vector3f& normal) {
   const float lamps = 0.07F * (value_noise(0.35F * p.x(), 0.35F * p.y(), 77) - 0.5F);
-  const float shade = 0.80F + 0.10F * normal.z() + 0.08F * normal.x() + 0.05F * normal.y() + lamps;
+  const float low = 0.10F * smooth_step(0.5F, 0.0F, p.z()) * (1.0F - std::abs(normal.z()));  // corners are darker
+  const float shade = 0.84F + 0.10F * normal.z() + 0.08F * normal.x() + 0.05F * normal.y() + lamps - low;
   return scaled(texture, 1.02F * shade, shade, 0.97F * shade);
 }
 

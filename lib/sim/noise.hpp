@@ -22,11 +22,17 @@ inline std::uint32_t hash_cell(int x, int y, int z, std::uint32_t seed) {
 /// In [0,1).
 inline float unit_of(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24F; }
 inline float cell_value(int x, int y, std::uint32_t seed) { return unit_of(hash_cell(x, y, 0, seed)); }
-inline int floor_int(float x) { return static_cast<int>(std::floor(x)); }
+/// std::floor is a function call on processors without SSE 4.1, and textures need little else.
+inline int floor_int(float x) {
+  const int truncated = static_cast<int>(x);
+  return truncated - (x < static_cast<float>(truncated) ? 1 : 0);
+}
+/// Part above the floor.
+inline float fraction(float x) { return x - static_cast<float>(floor_int(x)); }
 
 inline float lerp(float a, float b, float t) { return a + t * (b - a); }
 inline float smooth(float t) { return t * t * (3.0F - 2.0F * t); }
-/// 0 below `from`, 1 above `to`, smooth between.
+/// 0 at `from` and before, 1 at `to` and beyond, smooth between; `from` may be the larger.
 inline float smooth_step(float from, float to, float x) {
   const float t = (x - from) / (to - from);
   return t <= 0.0F ? 0.0F : t >= 1.0F ? 1.0F : smooth(t);

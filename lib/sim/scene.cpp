@@ -23,13 +23,12 @@ Box3d bounds_of(const SceneMesh& mesh) {
   return {mesh.origin + low.cast<double>(), mesh.origin + high.cast<double>()};
 }
 
-SurfaceHit surface_hit(const SceneData& data, std::uint32_t triangle, const Eigen::Vector3d& origin,
+SurfaceHit surface_hit(const SceneData& data, const SurfacePoint& point, double distance_m,
                        const Eigen::Vector3d& direction) {
   SurfaceHit hit;
-  hit.distance_m = data.plane_distance(triangle, origin, direction);
-  const Eigen::Vector3f normal = data.normal_of(triangle);
-  hit.normal = normal.cast<double>().dot(direction) > 0.0 ? Eigen::Vector3f(-normal) : normal;
-  hit.reflectivity = reflectivity(data.surface(triangle), (origin + hit.distance_m * direction).cast<float>());
+  hit.distance_m = distance_m;
+  hit.normal = point.normal.cast<double>().dot(direction) > 0.0 ? Eigen::Vector3f(-point.normal) : point.normal;
+  hit.reflectivity = reflectivity(data.surface(point.triangle), point.position);
   return hit;
 }
 
@@ -43,18 +42,16 @@ std::uint32_t first_triangle(const SceneData& data, const Eigen::Vector3d& origi
 SceneData::SceneData(SceneMesh parts)
     : mesh(std::move(parts)), caster(mesh.vertices, mesh.triangles), bounds(bounds_of(mesh)) {}
 
-double SceneData::plane_distance(std::uint32_t triangle, const Eigen::Vector3d& origin,
-                                 const Eigen::Vector3d& direction) const {
+PlaneHit SceneData::meet(std::uint32_t triangle, const Eigen::Vector3d& origin,
+                         const Eigen::Vector3d& direction) const {
   const Triangle& t = mesh.triangles[triangle];
   const Eigen::Vector3d a = mesh.vertices[t[0]].cast<double>();
   const Eigen::Vector3d n = (mesh.vertices[t[1]].cast<double>() - a).cross(mesh.vertices[t[2]].cast<double>() - a);
-  return std::max(0.0, n.dot(a - origin) / n.dot(direction));
+  return {std::max(0.0, n.dot(a - origin) / n.dot(direction)), n.cast<float>().normalized()};
 }
 
 Eigen::Vector3f SceneData::normal_of(std::uint32_t triangle) const {
-  const Triangle& t = mesh.triangles[triangle];
-  const Eigen::Vector3f& a = mesh.vertices[t[0]];
-  return (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).normalized();
+  return meet(triangle, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()).normal;
 }
 
 std::optional<Ray> SceneData::shadow_ray(const SurfacePoint& point) const {
@@ -81,7 +78,9 @@ std::optional<SurfaceHit> Scene::probe(const Eigen::Vector3d& origin, const Eige
   const Eigen::Vector3d local = origin - data_->mesh.origin;
   const std::uint32_t triangle = first_triangle(*data_, local, direction, max_distance_m);
   if (triangle == RayCaster::kNone) return std::nullopt;
-  return surface_hit(*data_, triangle, local, direction);
+  const PlaneHit plane = data_->meet(triangle, local, direction);
+  const SurfacePoint point{triangle, (local + plane.distance * direction).cast<float>(), plane.normal};
+  return surface_hit(*data_, point, plane.distance, direction);
 }
 
 std::optional<SceneHit> Scene::cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
@@ -89,9 +88,9 @@ std::optional<SceneHit> Scene::cast(const Eigen::Vector3d& origin, const Eigen::
   const Eigen::Vector3d local = origin - data_->mesh.origin;
   const std::uint32_t triangle = first_triangle(*data_, local, direction, max_distance_m);
   if (triangle == RayCaster::kNone) return std::nullopt;
-  const SurfaceHit hit = surface_hit(*data_, triangle, local, direction);
-  const Eigen::Vector3f point = (local + hit.distance_m * direction).cast<float>();
-  return SceneHit{hit, data_->color({triangle, point, data_->normal_of(triangle)})};
+  const PlaneHit plane = data_->meet(triangle, local, direction);
+  const SurfacePoint point{triangle, (local + plane.distance * direction).cast<float>(), plane.normal};
+  return SceneHit{surface_hit(*data_, point, plane.distance, direction), data_->color(point)};
 }
 
 RgbF Scene::sky(const Eigen::Vector3d& direction) const { return sky_color(direction.cast<float>()); }

@@ -34,6 +34,11 @@ struct SurfacePoint {
   Eigen::Vector3f position, normal;  ///< normal as the triangle is wound
 };
 
+struct PlaneHit {
+  double distance;
+  Eigen::Vector3f normal;  ///< unit, as the triangle is wound
+};
+
 struct SceneData {
   explicit SceneData(SceneMesh parts);
 
@@ -41,9 +46,10 @@ struct SceneData {
   RayCaster caster;
   Box3d bounds;
 
-  /// Distance to the plane of a triangle that the ray meets, in double: Embree's own is a float, and coarse at
-  /// grazing angles.
-  double plane_distance(std::uint32_t triangle, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
+  /// Where a ray meets the plane of a triangle, in double: Embree's own distance is a float, and coarse at grazing
+  /// angles. The direction may have any length; the distance is in units of it.
+  PlaneHit meet(std::uint32_t triangle, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
+  /// Unit, as the triangle is wound.
   Eigen::Vector3f normal_of(std::uint32_t triangle) const;
   const Surface& surface(std::uint32_t triangle) const { return mesh.surfaces[mesh.surface_of[triangle]]; }
 

@@ -12,8 +12,9 @@ enum class Material : std::uint8_t {
   kPlain,  ///< painted, slightly stained
   kBrick,
   kPlaster,
+  kPaint,   ///< of an inner wall
   kStone,   ///< large blocks
-  kWindow,  ///< glass in a frame
+  kWindow,  ///< glass (accent) in a frame (base)
   kDoor,
   kRoofTiles,
   kAsphalt,

@@ -10,6 +10,8 @@ RgbF texture_color(const Surface& s, const Eigen::Vector3f& p) {
       return brick_texture(s, p);
     case Material::kPlaster:
       return plaster_texture(s, p);
+    case Material::kPaint:
+      return paint_texture(s, p);
     case Material::kStone:
       return stone_texture(s, p);
     case Material::kWindow:
@@ -85,6 +87,7 @@ float base_reflectivity(Material material) {
     case Material::kCarPaint:
       return 0.25F;
     case Material::kPlaster:
+    case Material::kPaint:
     case Material::kCeiling:
     case Material::kPicture:
       return 0.65F;

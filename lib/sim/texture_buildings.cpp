@@ -8,8 +8,8 @@ namespace {
 
 /// Dirt that runs down a wall, and stains.
 float weathering(float u, float v, std::uint32_t seed) {
-  const float streaks = fractal_noise(1.3F * u, 0.12F * v, 3, seed + 11);
-  const float stains = fractal_noise(0.35F * u, 0.35F * v, 4, seed + 12);
+  const float streaks = fractal_noise(1.3F * u, 0.12F * v, 2, seed + 11);
+  const float stains = fractal_noise(0.35F * u, 0.35F * v, 3, seed + 12);
   return varied(streaks, 0.13F) * varied(stains, 0.22F);
 }
 
@@ -42,7 +42,8 @@ RgbF behind_pane(const Surface& s, float u, float v) {
   const std::uint32_t seed = s.seed;
   const float kind = unit_of(mix_bits(seed + 1)), tone = unit_of(mix_bits(seed + 2));
   const float sheen = fractal_noise(0.9F * (u + v), 0.9F * v - 0.5F * u, 3, seed + 3);  // a hint of what is opposite
-  const RgbF glass = {0.13F + 0.30F * sheen, 0.17F + 0.33F * sheen, 0.22F + 0.36F * sheen};
+  const float bright = 0.33F + 0.85F * sheen;
+  const RgbF glass = {bright * s.accent[0], bright * s.accent[1], bright * s.accent[2]};
   if (kind < 0.35F) {  // curtains drawn to both sides
     const float open = 0.12F + 0.30F * tone;
     const float from_middle = std::abs(u / s.width - 0.5F);
@@ -52,7 +53,7 @@ RgbF behind_pane(const Surface& s, float u, float v) {
   }
   if (kind < 0.55F) {  // a blind, partly down
     if (v / s.height < tone) return glass;
-    const float slat = v / 0.06F - std::floor(v / 0.06F);
+    const float slat = fraction(v / 0.06F);
     return times({0.80F, 0.79F, 0.74F}, 0.72F + 0.28F * slat);
   }
   return times(glass, 0.75F + 0.5F * tone);
@@ -68,9 +69,9 @@ RgbF stone_texture(const Surface& s, const Eigen::Vector3f& p) { return laid_sto
 
 RgbF plaster_texture(const Surface& s, const Eigen::Vector3f& p) {
   const auto [u, v] = uv_of(s, p);
-  const float grain = fractal_noise(9.0F * u, 9.0F * v, 3, s.seed + 5);
-  const float crack = std::abs(fractal_noise(0.8F * u, 0.8F * v, 4, s.seed + 6) - 0.5F);
-  const float dark = crack < 0.004F ? 0.82F : 1.0F;
+  const float grain = fractal_noise(11.0F * u, 11.0F * v, 2, s.seed + 5);
+  const float uneven = fractal_noise(0.8F * u, 0.8F * v, 4, s.seed + 6);
+  const float dark = std::abs(uneven - 0.44F) < 0.003F ? 0.80F : varied(uneven, 0.10F);  // a crack
   return times(s.base, weathering(u, v, s.seed) * varied(grain, 0.10F) * dark);
 }
 
@@ -88,7 +89,7 @@ RgbF door_texture(const Surface& s, const Eigen::Vector3f& p) {
   const float grain = fractal_noise(24.0F * u, 1.6F * v, 3, s.seed);
   // Panels: sunk fields, two columns of three.
   const float pu = 2.0F * u / s.width, pv = 3.0F * v / s.height;
-  const float fu = pu - std::floor(pu), fv = pv - std::floor(pv);
+  const float fu = fraction(pu), fv = fraction(pv);
   const float rim = std::min(std::min(fu, 1.0F - fu) * 0.5F * s.width, std::min(fv, 1.0F - fv) * s.height / 3.0F);
   const float groove = rim > 0.06F && rim < 0.085F ? 0.55F : 1.0F;
   const float handle_u = u - 0.88F * s.width, handle_v = v - 0.47F * s.height;

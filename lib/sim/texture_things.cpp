@@ -18,7 +18,7 @@ RgbF vivid(std::uint32_t bits) {
 }  // namespace
 
 RgbF plain_texture(const Surface& s, const Eigen::Vector3f& p) {
-  const float stains = fractal_noise(Eigen::Vector3f(1.1F * p), 4, s.seed + 81);
+  const float stains = fractal_noise(Eigen::Vector3f(1.4F * p), 3, s.seed + 81);
   const float grain = value_noise(Eigen::Vector3f(21.0F * p), s.seed + 82);
   return times(s.base, varied(stains, 0.17F) * varied(grain, 0.06F));
 }
@@ -37,14 +37,14 @@ RgbF bark_texture(const Surface& s, const Eigen::Vector3f& p) {
 }
 
 RgbF car_paint_texture(const Surface& s, const Eigen::Vector3f& p) {
-  const float dust = fractal_noise(Eigen::Vector3f(1.7F * p), 4, s.seed + 101);
+  const float dust = fractal_noise(Eigen::Vector3f(1.9F * p), 3, s.seed + 101);
   const float fine = value_noise(Eigen::Vector3f(14.0F * p), s.seed + 102);
   return mixed(times(s.base, varied(fine, 0.06F)), {0.55F, 0.51F, 0.45F}, 0.38F * smooth_step(0.35F, 0.75F, dust));
 }
 
 RgbF metal_texture(const Surface& s, const Eigen::Vector3f& p) {
   const float brushed = fractal_noise(Eigen::Vector3f(3.0F * p.x(), 3.0F * p.y(), 17.0F * p.z()), 3, s.seed + 111);
-  const float rust = smooth_step(0.62F, 0.75F, fractal_noise(Eigen::Vector3f(2.2F * p), 4, s.seed + 112));
+  const float rust = smooth_step(0.62F, 0.75F, fractal_noise(Eigen::Vector3f(2.2F * p), 3, s.seed + 112));
   return mixed(times(s.base, varied(brushed, 0.2F)), {0.42F, 0.27F, 0.17F}, 0.5F * rust);
 }
 
@@ -74,6 +74,16 @@ RgbF picture_texture(const Surface& s, const Eigen::Vector3f& p) {
   if (has_text && cell_value(floor_int(26.0F * x), line, s.seed) < 0.6F && edge > 0.12F * size)
     return vivid(s.seed + 3);
   return color;
+}
+
+RgbF paint_texture(const Surface& s, const Eigen::Vector3f& p) {
+  const auto [u, v] = uv_of(s, p);
+  const float roller = fractal_noise(14.0F * u, 14.0F * v, 2, s.seed + 141);
+  const float uneven = fractal_noise(0.9F * u, 0.9F * v, 4, s.seed + 142);
+  // Scuffs and marks, most of them low.
+  const float scuff = smooth_step(0.68F, 0.74F, fractal_noise(6.0F * u, 14.0F * v, 3, s.seed + 143));
+  return times(s.base,
+               varied(roller, 0.06F) * varied(uneven, 0.13F) * (1.0F - 0.12F * scuff * smooth_step(1.6F, 0.2F, v)));
 }
 
 RgbF carpet_texture(const Surface& s, const Eigen::Vector3f& p) {

@@ -44,6 +44,7 @@ RgbF metal_texture(const Surface& s, const Eigen::Vector3f& p);
 RgbF wood_texture(const Surface& s, const Eigen::Vector3f& p);
 RgbF picture_texture(const Surface& s, const Eigen::Vector3f& p);
 
+RgbF paint_texture(const Surface& s, const Eigen::Vector3f& p);
 RgbF carpet_texture(const Surface& s, const Eigen::Vector3f& p);
 RgbF floor_tiles_texture(const Surface& s, const Eigen::Vector3f& p);
 RgbF ceiling_texture(const Surface& s, const Eigen::Vector3f& p);

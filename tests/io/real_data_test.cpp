@@ -1,28 +1,9 @@
-#include <cstdlib>
+#include "io/real_data.hpp"
 
 #include "cmap/io/transform_file.hpp"
-#include "io/io_testing.hpp"
 
 namespace cmap::testing {
 namespace {
-
-/// Public recordings outside the repository: $CMAP_DATA_DIR, or shared/data beside it.
-class RealData : public ::testing::Test {
- protected:
-  void SetUp() override {
-    if (const char* folder = std::getenv("CMAP_DATA_DIR")) {
-      folder_ = folder;
-    } else if (const char* source = std::getenv("CMAP_SOURCE_DIR")) {
-      folder_ = std::filesystem::path(source) / "../shared/data";
-    }
-    if (folder_.empty() || !std::filesystem::is_directory(folder_)) {
-      GTEST_SKIP() << "no real data: set CMAP_DATA_DIR";
-    }
-  }
-  PointCloudFile read(std::string_view name) const { return read_point_cloud(folder_ / name); }
-
-  std::filesystem::path folder_;
-};
 
 TEST_F(RealData, TumPlyCounts) {
   EXPECT_EQ(read("tum_fr1/reference.ply").info.finite_points, 904998U);

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+
+#include "cmap/core/array.hpp"
+#include "cmap/core/camera_model.hpp"
+#include "cmap/core/point_cloud.hpp"
+
+namespace cmap {
+
+/// A photograph, row by row from the top. (What programs draw is render's Image, which has an alpha channel.)
+struct RgbImage {
+  int width = 0, height = 0;
+  Array<Rgb8> pixels;
+
+  Rgb8& at(int x, int y) { return pixels[index(x, y)]; }
+  const Rgb8& at(int x, int y) const { return pixels[index(x, y)]; }
+
+ private:
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+  }
+};
+
+// Module cmap::images, apart from cmap::io: OpenCV's imgcodecs adds 64 ms to the start of whatever links it.
+
+/// Reads a JPEG or PNG file (and what else OpenCV's imgcodecs decodes) as 8-bit RGB, as it lies in the file: an
+/// orientation in its metadata is not applied, as calibrations are of the sensor. Thread-safe. Throws InputError naming
+/// file and reason.
+RgbImage read_image(const std::filesystem::path& path);
+
+/// The same for an image of this camera. Throws InputError too if its size is not the calibration's.
+RgbImage read_image(const std::filesystem::path& path, const CameraModel& camera);
+
+/// Writes .jpg, .jpeg (quality 95) or .png; the file appears under its name only when complete. Throws UsageError for
+/// another name or if it cannot be written, std::invalid_argument unless there are width * height > 0 pixels.
+void write_image(const RgbImage& image, const std::filesystem::path& path);
+
+}  // namespace cmap

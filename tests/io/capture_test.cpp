@@ -1,0 +1,316 @@
+#include "cmap/io/capture.hpp"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <map>
+
+#include "cmap/io/lidar_scan.hpp"
+#include "io/capture_testing.hpp"
+
+namespace cmap::testing {
+namespace {
+
+using ::testing::HasSubstr;
+namespace fs = std::filesystem;
+
+constexpr const char* kCaptureJson = R"({
+ "version": 1,
+ "camera": {"model": "pinhole", "width": 30, "height": 20, "K": [25.5, 26, 14.5, 9.5], "distortion": [0.1, 0, 0, 0]},
+ "T_imu_lidar": [[0,-1,0,0.5],[1,0,0,0],[0,0,1,-0.25],[0,0,0,1]],
+ "T_lidar_camera": [[0,0,1,0],[-1,0,0,0],[0,-1,0,0],[0,0,0,1]],
+ "imu": {"acceleration_unit": "g"},
+ "time_offset": {"image_s": 0.5, "imu_s": -0.25}
+})";
+
+/// A small capture, to be broken one file at a time.
+struct CaptureText {
+  std::map<std::string, std::string> files{
+      {"capture.json", kCaptureJson},
+      {"images.csv", "timestamp_s,file\n1,images/a.jpg\n2.5,images/b.jpg\n"},
+      {"images/a.jpg", "not looked at"},
+      {"images/b.jpg", "not looked at"},
+      {"lidar.csv", "timestamp_s,file\n1.5,lidar/a.pcd\n"},
+      {"lidar/a.pcd", "not looked at"},
+      {"imu.csv", "timestamp_s,gx,gy,gz,ax,ay,az\n1,0.1,0.2,0.3,0,0,1\n1.5,0,0,0,0.5,0,-1\n"},
+      {"lio.tum", "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n"}};
+
+  Capture open() const {
+    const TempFolder folder;
+    write_to(folder.path());
+    return open_capture(folder.path());
+  }
+  void write_to(const fs::path& folder) const {
+    for (const auto& [name, content] : files) {
+      fs::create_directories((folder / name).parent_path());
+      std::ofstream(folder / name, std::ios::binary) << content;
+    }
+  }
+};
+
+TEST(Capture, OpensAHandMadeOne) {
+  const TempFolder folder;
+  CaptureText text;
+  text.files["predictions/session_0001/frames.csv"] = "not looked at";
+  text.files["predictions/session_0000.npz"] = "not looked at";
+  text.files["predictions/session_0000.frames.csv"] = "belongs to the NPZ file";
+  text.write_to(folder.path());
+  const Capture capture = open_capture(folder.path());
+  const CaptureCalibration& calibration = capture.calibration;
+  EXPECT_EQ(calibration.camera.projection, CameraProjection::kPinhole);
+  EXPECT_EQ(calibration.camera.fy, 26.0);
+  EXPECT_EQ(calibration.camera.distortion, (std::vector<double>{0.1, 0, 0, 0}));
+  EXPECT_EQ(calibration.T_imu_lidar * Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(-1.5, 1, 2.75));
+  EXPECT_EQ(calibration.T_lidar_camera * Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(3, -1, -2));
+  ASSERT_EQ(capture.images.size(), 2U);
+  EXPECT_EQ(capture.images[1].time_s, 3.0);
+  EXPECT_EQ(capture.images[1].path, folder / "images/b.jpg");
+  ASSERT_EQ(capture.scans.size(), 1U);
+  EXPECT_EQ(capture.scans[0].time_s, 1.5);
+  ASSERT_EQ(capture.imu.size(), 2U);
+  EXPECT_EQ(capture.imu[0].time_s, 0.75);
+  EXPECT_EQ(capture.imu[0].angular_rate_radps, Eigen::Vector3d(0.1, 0.2, 0.3));
+  EXPECT_EQ(capture.imu[1].specific_force_mps2, Eigen::Vector3d(0.5 * 9.80665, 0, -9.80665));
+  EXPECT_EQ(capture.lio.size(), 2U);
+  EXPECT_EQ(capture.sessions,
+            (std::vector<fs::path>{folder / "predictions/session_0000.npz", folder / "predictions/session_0001"}));
+  EXPECT_TRUE(capture.warnings.empty());
+}
+
+TEST(Capture, ImuPosesPredictionsOffsetsAndDistortionAreOptional) {
+  CaptureText text;
+  text.files.erase("imu.csv");
+  text.files.erase("lio.tum");
+  text.files["capture.json"] =
+      R"({"version":1, "camera":{"model":"fisheye","width":3,"height":2,"K":[1,1,1,1]},
+      "T_imu_lidar":[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]], "T_lidar_camera":[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]})";
+  const Capture capture = text.open();
+  EXPECT_TRUE(capture.imu.empty());
+  EXPECT_TRUE(capture.lio.empty());
+  EXPECT_TRUE(capture.sessions.empty());
+  EXPECT_EQ(capture.images[0].time_s, 1.0);
+  EXPECT_EQ(capture.calibration.camera.projection, CameraProjection::kFisheye);
+}
+
+/// MARS-LVIG's HKairport calibration as published: -0.0560389 stands for -0.00560389.
+TEST(Capture, RotationsAreProjectedWithAWarning) {
+  CaptureText text;
+  std::string& json = text.files["capture.json"];
+  const std::string exact = "[0,-1,0,0.5],[1,0,0,0]";
+  json.replace(json.find(exact), exact.size(), "[0,-1,0,0.5],[1,0,0.03,0]");
+  const Capture capture = text.open();
+  ASSERT_EQ(capture.warnings.size(), 1U);
+  EXPECT_EQ(capture.warnings[0].id, "rotation_not_orthonormal");
+  EXPECT_THAT(capture.warnings[0].message, HasSubstr("T_imu_lidar deviates from a rotation by 0.03"));
+  const Eigen::Matrix3d R = capture.calibration.T_imu_lidar.linear();
+  EXPECT_TRUE((R.transpose() * R).isIdentity(1e-14));
+  EXPECT_NEAR(R.determinant(), 1.0, 1e-14);
+  // The nearest rotation shares the error between the two sides of the product.
+  EXPECT_NEAR(R(1, 2), 0.015, 1e-4);
+  EXPECT_NEAR(R(2, 0), -0.015, 1e-4);
+}
+
+TEST(Capture, SmallDeviationsOfARotationAreSilent) {
+  CaptureText text;
+  std::string& json = text.files["capture.json"];
+  const std::string exact = "[0,-1,0,0.5],[1,0,0,0]";
+  json.replace(json.find(exact), exact.size(), "[0,-1,0,0.5],[1,0,0.0005,0]");
+  const Capture capture = text.open();
+  EXPECT_TRUE(capture.warnings.empty());
+  EXPECT_TRUE((capture.calibration.T_imu_lidar.linear().transpose() * capture.calibration.T_imu_lidar.linear())
+                  .isIdentity(1e-14));
+}
+
+TEST(Capture, EveryMissingFileIsNamed) {
+  for (const std::string name : {"capture.json", "images.csv", "lidar.csv", "images/b.jpg", "lidar/a.pcd"}) {
+    CaptureText text;
+    text.files.erase(name);
+    EXPECT_THAT(input_error([&] { text.open(); }), HasSubstr(name));
+  }
+  EXPECT_THAT(input_error([] { open_capture("/no/such/capture"); }), HasSubstr("/no/such/capture: is no folder"));
+}
+
+TEST(Capture, BrokenTablesAreRefusedByFileAndLine) {
+  struct Case {
+    std::string file, content, message;
+  };
+  const Case kCases[] = {
+      {"images.csv", "timestamp_s,file\n1,images/a.jpg\n1,images/b.jpg\n",
+       "line 3: time 1 s is not after the 1 s before it"},
+      {"images.csv", "timestamp_s,file\n2,images/a.jpg\n1,images/b.jpg\n", "line 3: time 1 s is not after the 2 s"},
+      {"images.csv", "time,file\n1,images/a.jpg\n", "line 1: the columns timestamp_s,file expected"},
+      {"images.csv", "timestamp_s,file\n1,\n", "line 2: no file is named"},
+      {"images.csv", "timestamp_s,file\n1,images\n", "is no file"},
+      {"images.csv", "timestamp_s,file\n", "lists no file"},
+      {"images.csv", "timestamp_s,file\n1,images/a.jpg,x\n", "line 2: 3 cells"},
+      {"lidar.csv", "timestamp_s,file\ninf,lidar/a.pcd\n", "line 2: timestamp_s is 'inf', not finite"},
+      {"lidar.csv", "timestamp_s,file\n1 s,lidar/a.pcd\n", "line 2: timestamp_s is '1 s', not a number"},
+      {"imu.csv", "timestamp_s,gx,gy,gz,ax,ay,az\n1,0,0,0,0,0,1\n0.5,0,0,0,0,0,1\n", "line 3: time 0.5 s is not after"},
+      {"imu.csv", "timestamp_s,gx,gy,gz,ax,ay,az\n1,0,0,0,0,0\n", "line 2: 6 cells; the 7"},
+      {"imu.csv", "timestamp_s,gx,gy,gz,ax,ay,az\n", "holds no measurement"},
+      {"imu.csv", "timestamp_s,ax,ay,az,gx,gy,gz\n", "line 1: the columns timestamp_s,gx,gy,gz,ax,ay,az expected"},
+      {"lio.tum", "1 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n", "line 2: time 1 s is not after"},
+      {"lio.tum", "1 0 0 0 0 0 0 0\n", "line 1: the quaternion has length 0"},
+      {"predictions", "a file", "is no folder"},
+  };
+  for (const Case& broken : kCases) {
+    CaptureText text;
+    text.files[broken.file] = broken.content;
+    const std::string message = input_error([&] { text.open(); });
+    EXPECT_THAT(message, HasSubstr(broken.message));
+    EXPECT_THAT(message, HasSubstr(broken.file));
+  }
+}
+
+TEST(Capture, BrokenCalibrationsAreRefusedByKey) {
+  struct Case {
+    std::string from, to, message;
+  };
+  const Case kCases[] = {
+      {"\"version\": 1", "\"version\": 2", "version is 2; 1 expected"},
+      {"\"version\": 1,", "", "key \"version\" is missing"},
+      {"\"T_imu_lidar\"", "\"T_lidar_imu\"", "unknown key \"T_lidar_imu\""},
+      {"\"imu\"", "\"IMU\"", "unknown key \"IMU\""},
+      {"\"image_s\"", "\"images\"", "unknown key \"time_offset.images\""},
+      {"\"model\"", "\"type\"", "unknown key \"camera.type\""},
+      {"\"model\": \"pinhole\",", "", "key \"camera.model\" is missing"},
+      {"\"pinhole\"", "\"omni\"", "camera.model is \"omni\""},
+      {"\"width\": 30", "\"width\": 0", "camera: width is 0"},
+      {"\"width\": 30", "\"width\": 30.5", "camera.width: 30.5 is no whole number"},
+      {"\"width\": 30", "\"width\": 1e30", "camera.width: 1e+30 is no whole number"},
+      {"[25.5, 26,", "[26,", "camera.K: [fx, fy, cx, cy] expected"},
+      {"[25.5, 26,", "[-25.5, 26,", "camera: fx is -25.5"},
+      {"[25.5, 26,", "[\"a\", 26,", "camera.K: \"a\" is no finite number"},
+      {"[0.1, 0, 0, 0]", "[0.1, 0, 0]", "0, 4, 5 or 8 expected"},
+      {"[0.1, 0, 0, 0]", "0.1", "camera.distortion: an array of numbers expected"},
+      {"[0,-1,0,0.5]", "[0,-1,0]", "T_imu_lidar: a 4x4 matrix of numbers expected"},
+      {"[0,-1,0,0.5]", "[0,1,0,0.5]", "T_imu_lidar: no rotation: |R^T R - I| = 0, det R = -1"},
+      {"[0,-1,0,0.5]", "[0,-1.2,0,0.5]", "T_imu_lidar: no rotation: |R^T R - I| = 0.44"},
+      {"[0,-1,0,0.5]", "[0,-1,0,null]", "T_imu_lidar: null is no finite number"},
+      {"[0,0,1,-0.25],[0,0,0,1]", "[0,0,1,0],[0.5,0,-0.25,1]", "T_imu_lidar: the last row is not 0 0 0 1"},
+      {"\"g\"", "\"G\"", "imu.acceleration_unit is \"G\""},
+      {"\"image_s\": 0.5", "\"image_s\": \"0.5\"", "time_offset.image_s: \"0.5\" is no finite number"},
+      {"\"imu_s\"", "\"image_s\"", "key \"image_s\" is given twice"},
+      {"{", "", "parse error"},
+  };
+  for (const Case& broken : kCases) {
+    CaptureText text;
+    std::string& json = text.files["capture.json"];
+    ASSERT_NE(json.find(broken.from), std::string::npos) << broken.from;
+    json.replace(json.find(broken.from), broken.from.size(), broken.to);
+    const std::string message = input_error([&] { text.open(); });
+    EXPECT_THAT(message, HasSubstr(broken.message));
+    EXPECT_THAT(message, HasSubstr("capture.json: "));
+  }
+}
+
+CaptureCalibration calibration() { return CaptureText().open().calibration; }
+
+LidarScan scan_at(double time_s) {
+  LidarScan scan;
+  scan.timestamp_s = time_s;
+  scan.positions = {{1, 2, 3}, {0.1F, -5, 1e-3F}};
+  scan.intensity = {7, 0.25F};
+  scan.time_s = {0, 0.0625F};
+  scan.ring = {0, 65535};
+  return scan;
+}
+
+void write_small_capture(const fs::path& folder) {
+  CaptureWriter writer(folder, calibration());
+  for (const double time_s : {1.125, 1317042504.967931}) {
+    std::ofstream(writer.add_image(time_s, ".png")) << "not looked at";
+    writer.add_scan(scan_at(time_s));
+  }
+  writer.write_imu(std::vector<ImuSample>{{0.1, {0.1, 1.0 / 3, -2}, {9.81, 1e-9, 0}}});
+  writer.write_lio({{1.5, {1, 2, 3}, Eigen::Quaterniond::Identity()}});
+  writer.add_session(SessionText().read());
+  writer.add_session(SessionText().read());
+  std::ofstream(writer.subfolder("truth") / "scales.json") << "{}";
+  writer.commit();
+}
+
+TEST(CaptureWriter, WrittenAndReadBackIsIdentical) {
+  const TempFolder folder;
+  write_small_capture(folder / "new");
+  EXPECT_FALSE(fs::exists(folder / "new.partial"));
+  const Capture capture = open_capture(folder / "new");
+  EXPECT_TRUE(capture.warnings.empty());
+  EXPECT_EQ(capture.calibration.camera.distortion, calibration().camera.distortion);
+  EXPECT_EQ(capture.calibration.T_imu_lidar.matrix(), calibration().T_imu_lidar.matrix());
+  EXPECT_EQ(capture.calibration.T_lidar_camera.matrix(), calibration().T_lidar_camera.matrix());
+  EXPECT_EQ(capture.calibration.image_time_offset_s, 0.5);
+  ASSERT_EQ(capture.images.size(), 2U);
+  EXPECT_EQ(capture.images[0].time_s, 1.125);
+  EXPECT_EQ(capture.images[1].time_s, 1317042504.967931);
+  EXPECT_THAT(read_bytes(folder / "new/images.csv"), HasSubstr("0.625,images/000000.png")) << "as recorded";
+  ASSERT_EQ(capture.scans.size(), 2U);
+  const LidarScan scan = read_lidar_scan(capture.scans[1].path, capture.scans[1].time_s);
+  EXPECT_EQ(scan.timestamp_s, 1317042504.967931);
+  EXPECT_EQ(scan.positions, scan_at(0).positions);
+  EXPECT_EQ(scan.intensity, scan_at(0).intensity);
+  EXPECT_EQ(scan.time_s, scan_at(0).time_s);
+  EXPECT_EQ(scan.ring, scan_at(0).ring);
+  ASSERT_EQ(capture.imu.size(), 1U);
+  EXPECT_DOUBLE_EQ(capture.imu[0].time_s, 0.1);  // less and plus the offset
+  EXPECT_EQ(capture.imu[0].angular_rate_radps, Eigen::Vector3d(0.1, 1.0 / 3, -2));
+  EXPECT_EQ(capture.imu[0].specific_force_mps2, Eigen::Vector3d(9.81, 1e-9, 0));
+  ASSERT_EQ(capture.lio.size(), 1U);
+  EXPECT_EQ(capture.lio[0].position, Eigen::Vector3d(1, 2, 3));
+  ASSERT_EQ(capture.sessions.size(), 2U);
+  EXPECT_EQ(read_session_predictions(capture.sessions[1]).depth, SessionText().read().depth);
+  EXPECT_TRUE(fs::exists(folder / "new/truth/scales.json"));
+}
+
+TEST(CaptureWriter, WithoutCommitNothingIsLeft) {
+  const TempFolder folder;
+  {
+    CaptureWriter writer(folder / "new", calibration());
+    writer.add_scan(scan_at(1));
+    EXPECT_TRUE(fs::exists(folder / "new.partial/lidar/000000.pcd"));
+  }
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+/// Killed at any moment, a writer leaves nothing that reads as a capture.
+TEST(CaptureWriter, KilledItLeavesNoCapture) {
+  const TempFolder folder;
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    CaptureWriter writer(folder / "new", calibration());
+    writer.add_scan(scan_at(1));
+    std::ofstream(writer.add_image(1, ".png")) << "not looked at";
+    ::kill(::getpid(), SIGKILL);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  EXPECT_FALSE(fs::exists(folder / "new"));
+  EXPECT_THAT(input_error([&] { open_capture(folder / "new.partial"); }), HasSubstr("capture.json: no such file"));
+  try {
+    const CaptureWriter again(folder / "new", calibration());
+    ADD_FAILURE() << "the rest of another run was taken over";
+  } catch (const UsageError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("new.partial is there: left by a run that was stopped"));
+  }
+}
+
+TEST(CaptureWriter, RefusesWhatWouldNotReadBack) {
+  const TempFolder folder;
+  fs::create_directory(folder / "there");
+  EXPECT_THROW(CaptureWriter(folder / "there", calibration()), UsageError);
+  EXPECT_THROW(CaptureWriter(folder / "no/such/place", calibration()), UsageError);
+  EXPECT_THROW(CaptureWriter(folder / "new", CaptureCalibration{}), UsageError) << "no camera";
+  CaptureWriter writer(folder / "new", calibration());
+  writer.add_scan(scan_at(2));
+  EXPECT_THROW(writer.add_scan(scan_at(2)), std::invalid_argument);
+  writer.add_image(1, ".png");
+  EXPECT_THROW(writer.add_image(0.5, ".png"), std::invalid_argument);
+  EXPECT_THROW(writer.commit(), UsageError) << "the image was never written";
+  EXPECT_FALSE(fs::exists(folder / "new"));
+}
+
+}  // namespace
+}  // namespace cmap::testing
