@@ -23,7 +23,8 @@ void read_section(Options& options, const Json& json, const std::string& name) {
 /// A model is where the LiDAR's other fields start from.
 void read_section(LidarOptions& options, Json json, const std::string& name) {
   if (json.is_object() && json.contains("model")) {
-    if (!json["model"].is_string()) throw UsageError(fmt::format("{}: model: {} is not a name", name, json["model"].dump()));
+    if (!json["model"].is_string())
+      throw UsageError(fmt::format("{}: model: {} is not a name", name, json["model"].dump()));
     options = lidar_model(json["model"].get<std::string>());
     json.erase("model");
   }
@@ -32,7 +33,7 @@ void read_section(LidarOptions& options, Json json, const std::string& name) {
 
 constexpr NumberRange kDuration{.low = 0.0};
 
-void apply(CaptureOptions& options, const Json& config) {
+void apply_sections(CaptureOptions& options, const Json& config) {
   if (!config.is_object()) throw UsageError("expected a JSON object of options");
   Json top = Json::object();
   for (const auto& [key, value] : config.items()) {
@@ -60,11 +61,11 @@ Eigen::Matrix3d rotation_of(const Eigen::Vector3d& roll_pitch_yaw_deg) {
 }  // namespace
 
 void apply_capture_config(CaptureOptions& options, const std::string& json_text, const std::string& source) {
-  read_json(json_text, source, [&](const Json& config) { apply(options, config); });
+  read_json(json_text, source, [&](const Json& config) { apply_sections(options, config); });
 }
 
 void apply_capture_config_file(CaptureOptions& options, const std::filesystem::path& path) {
-  read_json_file(path, "a configuration file", [&](const Json& config) { apply(options, config); });
+  read_json_file(path, "a configuration file", [&](const Json& config) { apply_sections(options, config); });
 }
 
 void set_capture_option(CaptureOptions& options, const std::string& assignment) {
@@ -82,7 +83,7 @@ void set_capture_option(CaptureOptions& options, const std::string& assignment) 
   } else {
     config[key.substr(0, dot)][key.substr(dot + 1)] = value;
   }
-  apply(options, config);
+  apply_sections(options, config);
 }
 
 std::vector<std::string> capture_preset_names() {

@@ -92,12 +92,24 @@ void draw_view(Panel panel, int width, int height, const std::function<Rgb8(std:
   });
 }
 
-void draw_scan(Panel panel, const LidarScan& scan) {
+/// Drawn at half brightness.
+double median_depth_m(const Array<float>& depth_m) {
+  std::vector<float> finite;
+  for (const float d : depth_m) {
+    if (std::isfinite(d)) finite.push_back(d);
+  }
+  if (finite.empty()) return 1.0;
+  const auto middle = finite.begin() + static_cast<std::ptrdiff_t>(finite.size() / 2);
+  std::ranges::nth_element(finite, middle);
+  return *middle;
+}
+
+void draw_scan(Panel panel, std::span<const Eigen::Vector3f> scan) {
   panel.fill([](int, int) { return Rgb8{0, 0, 60}; });
-  if (scan.positions.empty()) return;
-  std::vector<float> reach, heights;
-  for (const Eigen::Vector3f& p : scan.positions) {
-    reach.push_back(p.norm());
+  if (scan.empty()) return;
+  std::vector<float> reach, heights;  // in the plane, upward
+  for (const Eigen::Vector3f& p : scan) {
+    reach.push_back(p.head<2>().norm());
     heights.push_back(p.z());
   }
   std::ranges::sort(reach);
@@ -105,7 +117,7 @@ void draw_scan(Panel panel, const LidarScan& scan) {
   const double r = reach[reach.size() * 95 / 100];
   const double low = heights[heights.size() / 50], high = heights[heights.size() * 49 / 50];
   const PlaneWindow window({-r, -r}, {r, r});
-  for (const Eigen::Vector3f& p : scan.positions) {
+  for (const Eigen::Vector3f& p : scan) {
     const Eigen::Vector2i c = window.pixel(p.head<2>().cast<double>());
     panel.set(c.x(), c.y(), gray(0.3 + 0.7 * (p.z() - low) / std::max(0.1, high - low)));
   }
@@ -114,16 +126,17 @@ void draw_scan(Panel panel, const LidarScan& scan) {
 }  // namespace
 
 RgbImage capture_preview(const Scene& scene, const PoseSpline& path, double from_z_m, const CameraView& view,
-                         const LidarScan& scan) {
+                         std::span<const Eigen::Vector3f> scan) {
   RgbImage image;
   image.width = 2 * kWidth_px;
   image.height = 2 * kHeight_px;
   image.pixels.resize(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
   draw_map(Panel(image, 0, 0), scene, path, from_z_m);
-  draw_view(Panel(image, 1, 0), view.image.width, view.image.height, [&](std::size_t i) { return view.image.pixels[i]; });
-  constexpr double kMiddle_m = 10.0;  // depth that is drawn at half brightness
+  draw_view(Panel(image, 1, 0), view.image.width, view.image.height,
+            [&](std::size_t i) { return view.image.pixels[i]; });
+  const double middle_m = median_depth_m(view.depth_m);
   draw_view(Panel(image, 0, 1), view.image.width, view.image.height,
-            [&](std::size_t i) { return gray(kMiddle_m / (kMiddle_m + static_cast<double>(view.depth_m[i]))); });
+            [&](std::size_t i) { return gray(middle_m / (middle_m + static_cast<double>(view.depth_m[i]))); });
   draw_scan(Panel(image, 1, 1), scan);
   return image;
 }

@@ -80,7 +80,7 @@ class CaptureRun {
         path_(make_path(make_route(scene_, options.route), options.path, seed_)),
         T_imu_lidar_(T_imu_lidar_of(options.mount)),
         T_imu_camera_(T_imu_lidar_ * T_lidar_camera_of(options.mount)),
-        seen_(sample_surface(scene_, options.truth.map_points_per_m2, seed_)) {
+        seen_(scene_, sample_surface(scene_, options.truth.map_points_per_m2, seed_)) {
     end_s_ = path_.end_s();
     if (o_.max_duration_s > 0.0) end_s_ = std::min(end_s_, path_.start_s() + o_.max_duration_s);
     image_times_ = times_between(path_.start_s() + o_.camera.begin_s + o_.camera.phase_s, end_s_, o_.camera.rate_hz);
@@ -160,8 +160,7 @@ class CaptureRun {
     const CameraModel camera = camera_of(o_.camera);
     for_each("images", image_times_.size(), 0.3, 0.6, [&](std::size_t i) {
       const Eigen::Isometry3d T = T_world_camera(image_times_[i]);
-      CameraView view =
-          render_view(scene_, camera, T, {o_.camera.supersampling, gain(i), o_.camera.vignetting});
+      CameraView view = render_view(scene_, camera, T, {o_.camera.supersampling, gain(i), o_.camera.vignetting});
       seen_.look(camera, T, view.depth_m, o_.truth.map_max_depth_m);
       add_pixel_noise(view.image, i);
       const fs::path file = writer_.add_image(stated_time(i), "." + o_.camera.format);
@@ -208,7 +207,10 @@ class CaptureRun {
     // Under the ceiling of a room, over the roofs of a town.
     const double z = o_.scene.kind == SceneKind::kIndoor ? path_.pose(path_.start_s()).translation().z() + 0.5
                                                          : scene_.bounds().max.z() + 1.0;
-    write_image(capture_preview(scene_, path_, z, middle_view_, middle_scan_), truth_ / "preview.png");
+    const Eigen::Matrix3f R_world_lidar = (path_.pose(middle_scan_.timestamp_s) * T_imu_lidar_).linear().cast<float>();
+    std::vector<Eigen::Vector3f> scan;
+    for (const Eigen::Vector3f& p : middle_scan_.positions) scan.emplace_back(R_world_lidar * p);
+    write_image(capture_preview(scene_, path_, z, middle_view_, scan), truth_ / "preview.png");
   }
 
   const CaptureOptions& o_;
@@ -223,7 +225,7 @@ class CaptureRun {
   double end_s_ = 0.0;
   std::vector<double> image_times_;
   std::vector<std::string> image_names_;
-  LidarScan middle_scan_;   ///< for the preview
+  LidarScan middle_scan_;  ///< for the preview
   CameraView middle_view_;
   nlohmann::ordered_json scales_{{"version", 1}, {"unit", "metres per session unit"}};
 };

@@ -70,17 +70,17 @@ struct CameraOptions {
   double begin_s = 0.0;   ///< no pictures before, from the start of the path
   int supersampling = 2;
   double vignetting = 0.0;
-  double exposure_noise = 0.0;    ///< standard deviation of the logarithm of a picture's gain
-  double pixel_noise_u8 = 0.0;    ///< standard deviation of a pixel's channel, of 255
-  std::string format = "jpg";     ///< or "png"
+  double exposure_noise = 0.0;  ///< standard deviation of the logarithm of a picture's gain
+  double pixel_noise_u8 = 0.0;  ///< standard deviation of a pixel's channel, of 255
+  std::string format = "jpg";   ///< or "png"
 };
 
 /// What the capture says that is not so, for experiments on what follows.
 struct StatedOptions {
-  Eigen::Vector3d camera_rotation_error_deg = Eigen::Vector3d::Zero();  ///< rotation vector, camera's frame
+  Eigen::Vector3d camera_rotation_error_deg = Eigen::Vector3d::Zero();   ///< rotation vector, camera's frame
   Eigen::Vector3d camera_translation_error_m = Eigen::Vector3d::Zero();  ///< LiDAR's frame
-  double image_time_error_s = 0.0;  ///< added to the stamps of images and predictions
-  bool lio = true;                  ///< writes lio.tum: poses at the first scan's start and at every scan's end
+  double image_time_error_s = 0.0;        ///< added to the stamps of images and predictions
+  bool lio = true;                        ///< writes lio.tum: poses at the first scan's start and at every scan's end
   double lio_drift_m_per_sqrt_m = 0.002;  ///< standard deviation per axis after 1 m of way: a random walk
   double lio_drift_deg_per_sqrt_m = 0.003;
 };
@@ -94,7 +94,7 @@ struct TruthOptions {
 
 /// Everything that makes a simulated capture.
 struct CaptureOptions {
-  int seed = 1;                ///< of all noise and sway
+  int seed = 1;                 ///< of all noise and sway
   double max_duration_s = 0.0;  ///< ends earlier than the path; 0: no
   SceneChoice scene;
   RouteChoice route;
