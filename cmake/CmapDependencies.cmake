@@ -79,10 +79,16 @@ endforeach()
 
 # The simulator: optional. Embree casts its rays; it writes photographs.
 find_package(embree 3 QUIET)
+set(CMAP_WITH_SIM OFF)
 if(embree_FOUND AND CMAP_WITH_IMAGES)
   set(CMAP_WITH_SIM ON)
-else()
-  set(CMAP_WITH_SIM OFF)
+endif()
+
+# Pose graphs: optional.
+find_package(Ceres 2.1 QUIET)
+set(CMAP_WITH_CERES OFF)
+if(Ceres_FOUND)
+  set(CMAP_WITH_CERES ON)
 endif()
 
 function(cmap_print_summary)
@@ -93,6 +99,7 @@ function(cmap_print_summary)
   message(STATUS "  OpenGL       ${CMAP_WITH_GL}     apt-get install libvtk9-dev libegl-dev libgl-dev libx11-dev")
   message(STATUS "  global align ${CMAP_WITH_PCL}     apt-get install libpcl-dev")
   message(STATUS "  simulator    ${CMAP_WITH_SIM}     apt-get install libembree-dev libopencv-imgcodecs-dev (Embree 3)")
+  message(STATUS "  pose graphs  ${CMAP_WITH_CERES}     apt-get install libceres-dev (2.1 or later)")
   message(STATUS "  tests        ${CMAP_BUILD_TESTS}     -DCMAP_BUILD_TESTS=ON|OFF (libgtest-dev libgmock-dev)")
   message(STATUS "  benchmarks   ${CMAP_BUILD_BENCHMARKS}    -DCMAP_BUILD_BENCHMARKS=ON|OFF (libbenchmark-dev; peers: libnanoflann-dev libpcl-dev libopen3d-dev)")
   message(STATUS "  fuzzers      ${CMAP_BUILD_FUZZERS}    -DCMAP_BUILD_FUZZERS=ON|OFF (clang)")

@@ -11,7 +11,7 @@ packages=(
   libeigen3-dev libfmt-dev libtbb-dev libssl-dev nlohmann-json3-dev libcli11-dev
   zlib1g-dev liblzf-dev liblz4-dev libflann-dev
   libvtk9-dev libopencv-imgproc-dev libopencv-imgcodecs-dev fonts-dejavu-core
-  libegl-dev libgl-dev libx11-dev libpcl-dev libembree-dev
+  libegl-dev libgl-dev libx11-dev libpcl-dev libembree-dev libceres-dev
 )
 for argument in "$@"; do
   case "$argument" in
