@@ -28,7 +28,7 @@ using cmap::ExitCode;
 
 constexpr const char* kDescription =
     "Evaluates an estimated point-cloud map against a reference: color, geometry and distribution metrics.\n"
-    "Reads PLY, PCD, LAS and text.";
+    "Reads PLY, PCD, LAS, NPY, NPZ and text.";
 
 constexpr const char* kExample =
     "Example:\n"

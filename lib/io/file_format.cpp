@@ -8,7 +8,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-constexpr std::string_view kReadable = "PLY, PCD, LAS and text (x y z [r g b]) can be read";
+constexpr std::string_view kReadable = "PLY, PCD, LAS, NPY, NPZ and text (x y z [r g b]) can be read";
 
 struct Foreign {
   std::string_view magic;
@@ -16,8 +16,6 @@ struct Foreign {
 };
 
 constexpr Foreign kForeign[] = {
-    {"\x93NUMPY"sv, "is a NumPy array (.npy)"},
-    {"PK\x03\x04"sv, "is a ZIP archive (.zip, .npz)"},
     {"ASTM-E57"sv, "is an E57 file (pdal translate in.e57 out.ply converts it)"},
     {"\x1f\x8b"sv, "is compressed with gzip; decompress it first"},
     {"\x28\xb5\x2f\xfd"sv, "is compressed with zstd; decompress it first"},
@@ -72,6 +70,8 @@ FileFormat detect_format(ByteSource& source) {
   const std::string_view start(reinterpret_cast<const char*>(bytes.data()), std::min<std::size_t>(4096, bytes.size()));
   if (start.starts_with("ply\n") || start.starts_with("ply\r")) return FileFormat::kPly;
   if (start.starts_with("LASF")) return FileFormat::kLas;
+  if (start.starts_with("\x93NUMPY")) return FileFormat::kNpy;
+  if (start.starts_with("PK\x03\x04")) return FileFormat::kNpz;
   if (looks_like_pcd(start)) return FileFormat::kPcd;
   for (const Foreign& foreign : kForeign) {
     if (start.starts_with(foreign.magic)) source.fail("{}; {}", foreign.message, kReadable);

@@ -10,6 +10,10 @@ PointCloud read_ply(ByteSource& source, FileInfo& info);
 PointCloud read_pcd(ByteSource& source, FileInfo& info);
 PointCloud read_las(ByteSource& source, FileInfo& info);
 PointCloud read_text(ByteSource& source, FileInfo& info);
+/// An array of shape (..., 3).
+PointCloud read_npy_cloud(ByteSource& source, FileInfo& info);
+/// VGGT's predictions with world_points, VGGT-SLAM's point maps, or one array of points. The file is held in memory.
+PointCloud read_npz_cloud(ByteSource& source, FileInfo& info);
 
 /// What read_point_cloud() does, on a source that is already open.
 PointCloudFile read_point_cloud(ByteSource& source);

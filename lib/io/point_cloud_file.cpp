@@ -20,6 +20,12 @@ PointCloudFile read_point_cloud(ByteSource& source) {
     case FileFormat::kLas:
       file.cloud = read_las(source, file.info);
       break;
+    case FileFormat::kNpy:
+      file.cloud = read_npy_cloud(source, file.info);
+      break;
+    case FileFormat::kNpz:
+      file.cloud = read_npz_cloud(source, file.info);
+      break;
     case FileFormat::kText:
       file.cloud = read_text(source, file.info);
       break;

@@ -85,6 +85,7 @@ bool take_entry(std::span<const std::byte>& directory, ZipMember& member) {
 
 /// Inflates as much as fits into `out`; false if the data are damaged or fill less.
 bool inflate_into(std::span<const std::byte> deflated, std::span<std::byte> out) {
+  if (out.empty()) return true;
   constexpr std::size_t kMostAtOnce = std::numeric_limits<uInt>::max();
   z_stream stream{};
   constexpr int kRawDeflate = -15;

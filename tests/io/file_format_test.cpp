@@ -24,6 +24,8 @@ TEST(FileFormat, ContentComesBeforeTheExtension) {
   EXPECT_EQ(format_of("a.ply", "# .PCD v0.7\n"), FileFormat::kPcd);
   EXPECT_EQ(format_of("a.ply", "# x\n\n#y\nVERSION 0.7\n"), FileFormat::kPcd);
   EXPECT_EQ(format_of("a.ply", "LASF"), FileFormat::kLas);
+  EXPECT_EQ(format_of("a.ply", "\x93NUMPY"), FileFormat::kNpy);
+  EXPECT_EQ(format_of("a.ply", "PK\x03\x04"), FileFormat::kNpz);
   EXPECT_EQ(format_of("a", "1 2 3\n"), FileFormat::kText);
 }
 
@@ -36,8 +38,6 @@ TEST(FileFormat, ExtensionDecidesWhereContentDoesNot) {
 
 TEST(FileFormat, NamesWhatCannotBeRead) {
   const std::pair<std::string, std::string> kCases[] = {
-      {"\x93NUMPY\x01", "NumPy array"},
-      {"PK\x03\x04....", "ZIP archive (.zip, .npz)"},
       {"ASTM-E57....", "E57"},
       {"\x1f\x8b\x08", "gzip"},
       {"version https://git-lfs.github.com/spec/v1\n", "Git LFS pointer"},
@@ -45,7 +45,7 @@ TEST(FileFormat, NamesWhatCannotBeRead) {
       {"\x01\x02\x00\xff"s, "of no known format"},
   };
   for (const auto& [content, message] : kCases) {
-    EXPECT_THAT(refusal("a.xyz", content), AllOf(HasSubstr(message), HasSubstr("PLY, PCD, LAS and text")));
+    EXPECT_THAT(refusal("a.xyz", content), AllOf(HasSubstr(message), HasSubstr("PLY, PCD, LAS, NPY, NPZ and text")));
   }
 }
 

@@ -4,6 +4,10 @@
 namespace cmap::testing {
 namespace {
 
+constexpr std::pair<const char*, fuzz::Reader> kReaders[] = {{"ply", read_ply},       {"pcd", read_pcd},
+                                                             {"las", read_las},       {"npy", read_npy_cloud},
+                                                             {"npz", read_npz_cloud}, {"text", read_text}};
+
 /// Every input that the fuzzers start from or once found, through every reader, with every compiler.
 std::size_t replay(const std::filesystem::path& folder) {
   std::size_t n = 0;
@@ -11,9 +15,9 @@ std::size_t replay(const std::filesystem::path& folder) {
     if (!entry.is_regular_file() || entry.path().filename() == ".gitkeep") continue;
     const std::string bytes = read_bytes(entry.path());
     SCOPED_TRACE(entry.path());
-    for (const fuzz::Reader reader : {read_ply, read_pcd, read_las, read_text}) {
-      fuzz::try_reader(reader, std::as_bytes(std::span(bytes)));
-    }
+    for (const auto& [name, reader] : kReaders) fuzz::try_reader(reader, std::as_bytes(std::span(bytes)));
+    fuzz::try_session(std::as_bytes(std::span(bytes)));
+    fuzz::try_capture(std::as_bytes(std::span(bytes)));
     ++n;
   }
   return n;
@@ -25,13 +29,11 @@ std::filesystem::path fuzz_folder() {
 }
 
 TEST(FuzzRegressions, CorpusAndRegressionsAreReadOrRefused) {
-  EXPECT_GE(replay(fuzz_folder() / "corpus"), 15U);
+  EXPECT_GE(replay(fuzz_folder() / "corpus"), 20U);
   replay(fuzz_folder() / "regressions");
 }
 
 TEST(FuzzRegressions, EverySeedIsReadByItsOwnReader) {
-  const std::pair<const char*, fuzz::Reader> kReaders[] = {
-      {"ply", read_ply}, {"pcd", read_pcd}, {"las", read_las}, {"text", read_text}};
   for (const auto& [name, reader] : kReaders) {
     for (const auto& entry : std::filesystem::directory_iterator(fuzz_folder() / "corpus" / name)) {
       ByteSource source(entry.path());
@@ -41,10 +43,24 @@ TEST(FuzzRegressions, EverySeedIsReadByItsOwnReader) {
   }
 }
 
+TEST(FuzzRegressions, EverySessionAndCaptureSeedIsRead) {
+  const auto bytes_of = [](std::string_view name) { return read_bytes(fuzz_folder() / "corpus" / name); };
+  for (const std::string_view name : {"npz/predictions", "npz/predictions_deflated"}) {
+    const std::string bytes = bytes_of(name);
+    SessionPredictions session;
+    std::size_t frames = 0;
+    const ArrayStore store("seed", std::as_bytes(std::span(bytes)));
+    read_depth(store, session, frames);
+    read_images(store, session, frames);
+    read_cameras(store, session, frames);
+    EXPECT_EQ(frames, 2U);
+  }
+  EXPECT_EQ(parse_capture_json(bytes_of("capture/pinhole"), "seed").calibration.camera.distortion.size(), 5U);
+  EXPECT_EQ(parse_capture_json(bytes_of("capture/fisheye"), "seed").calibration.camera.distortion.size(), 4U);
+}
+
 /// Every seed cut at every length, and with every byte changed: what a fuzzer does first.
 TEST(FuzzRegressions, CutAndChangedSeedsAreReadOrRefused) {
-  const std::pair<const char*, fuzz::Reader> kReaders[] = {
-      {"ply", read_ply}, {"pcd", read_pcd}, {"las", read_las}, {"text", read_text}};
   for (const auto& [name, reader] : kReaders) {
     for (const auto& entry : std::filesystem::directory_iterator(fuzz_folder() / "corpus" / name)) {
       const std::string seed = read_bytes(entry.path());
@@ -53,6 +69,20 @@ TEST(FuzzRegressions, CutAndChangedSeedsAreReadOrRefused) {
         changed[i] = static_cast<char>(~changed[i]);
         fuzz::try_reader(reader, std::as_bytes(std::span(changed)));
         fuzz::try_reader(reader, std::as_bytes(std::span(seed)).first(i + 1));
+      }
+    }
+  }
+}
+
+TEST(FuzzRegressions, CutAndChangedSessionsAndCapturesAreReadOrRefused) {
+  for (const auto& [name, attempt] : {std::pair{"npz", &fuzz::try_session}, std::pair{"capture", &fuzz::try_capture}}) {
+    for (const auto& entry : std::filesystem::directory_iterator(fuzz_folder() / "corpus" / name)) {
+      const std::string seed = read_bytes(entry.path());
+      for (std::size_t i = 0; i < seed.size(); ++i) {
+        std::string changed = seed;
+        changed[i] = static_cast<char>(~changed[i]);
+        attempt(std::as_bytes(std::span(changed)));
+        attempt(std::as_bytes(std::span(seed)).first(i + 1));
       }
     }
   }

@@ -32,7 +32,7 @@ struct PointCloudFile {
   FileInfo info;
 };
 
-/// Reads a point cloud of any format of FORMATS (PLY, PCD, LAS, text), recognized by content first, extension second.
+/// Reads a point cloud of any format of FORMATS (PLY, PCD, LAS, NPY, NPZ, text), recognized by content first, extension second.
 /// Points that are not finite, in position or in a float color, are dropped and counted; colors stay as stored; the
 /// origin is choose_origin() of the bounds. Float files near zero keep their floats exactly; a pipe is read into
 /// memory. Thread-safe. Throws InputError naming file, place (line, byte or field) and reason: missing or unreadable
