@@ -116,7 +116,7 @@ void describe(Fields& f, FieldsOf<Fields, StatedOptions>& o) {
 template <class Fields>
 void describe(Fields& f, FieldsOf<Fields, TruthOptions>& o) {
   f.field("map_points_per_m2", o.map_points_per_m2, kPositive);
-  f.field("map_max_depth_m", o.map_max_depth_m, kPositive);
+  f.field("map_max_distance_m", o.map_max_distance_m, kPositive);
   f.field("trajectory_rate_hz", o.trajectory_rate_hz, kPositive);
 }
 

@@ -16,10 +16,10 @@
 #include "cmap/io/output_file.hpp"
 #include "cmap/io/point_cloud_file.hpp"
 #include "cmap/sim/random_stream.hpp"
+#include "cmap/sim/seen_surface.hpp"
 #include "sim/capture_descriptions.hpp"
 #include "sim/capture_preview.hpp"
 #include "sim/lio_drift.hpp"
-#include "sim/seen_surface.hpp"
 
 namespace cmap {
 namespace {
@@ -79,8 +79,7 @@ class CaptureRun {
         scene_(make_scene(options.scene)),
         path_(make_path(make_route(scene_, options.route), options.path, seed_)),
         T_imu_lidar_(T_imu_lidar_of(options.mount)),
-        T_imu_camera_(T_imu_lidar_ * T_lidar_camera_of(options.mount)),
-        seen_(scene_, sample_surface(scene_, options.truth.map_points_per_m2, seed_)) {
+        T_imu_camera_(T_imu_lidar_ * T_lidar_camera_of(options.mount)) {
     end_s_ = path_.end_s();
     if (o_.max_duration_s > 0.0) end_s_ = std::min(end_s_, path_.start_s() + o_.max_duration_s);
     image_times_ = times_between(path_.start_s() + o_.camera.begin_s + o_.camera.phase_s, end_s_, o_.camera.rate_hz);
@@ -93,8 +92,8 @@ class CaptureRun {
     write_scans();
     write_images();
     write_sessions();
-    report("map", 0.97);
-    write_ply(truth_ / "map.ply", seen_.seen());
+    report("map", 0.9);
+    write_map();
     write_text(truth_ / "options.json", to_json(o_).dump(1) + "\n");
     write_preview();
     writer_.commit();
@@ -161,7 +160,6 @@ class CaptureRun {
     for_each("images", image_times_.size(), 0.3, 0.6, [&](std::size_t i) {
       const Eigen::Isometry3d T = T_world_camera(image_times_[i]);
       CameraView view = render_view(scene_, camera, T, {o_.camera.supersampling, gain(i), o_.camera.vignetting});
-      seen_.look(camera, T, view.depth_m, o_.truth.map_max_depth_m);
       add_pixel_noise(view.image, i);
       const fs::path file = writer_.add_image(stated_time(i), "." + o_.camera.format);
       write_image(view.image, file);
@@ -186,7 +184,7 @@ class CaptureRun {
     const auto sessions = cut_sessions((image_times_.size() + stride - 1) / stride, o_.predictions.session_length,
                                        o_.predictions.session_overlap);
     std::map<std::size_t, NetworkFrame> rendered;  // of this session, and those that the next one shares
-    for_each("predictions", sessions.size(), 0.6, 0.97, [&](std::size_t number) {
+    for_each("predictions", sessions.size(), 0.6, 0.9, [&](std::size_t number) {
       const auto [first, count] = sessions[number];
       std::erase_if(rendered, [&, from = first](const auto& frame) { return frame.first < from; });
       std::vector<const NetworkFrame*> frames;
@@ -201,6 +199,13 @@ class CaptureRun {
       if (session.pose_stretch != 1.0) scales_["pose_stretch"][name] = session.pose_stretch;
     });
     write_text(truth_ / "scales.json", scales_.dump(1) + "\n");
+  }
+
+  void write_map() const {
+    std::vector<Eigen::Isometry3d> cameras;
+    for (const double t : image_times_) cameras.push_back(T_world_camera(t));
+    write_ply(truth_ / "map.ply", seen_surface(scene_, camera_of(o_.camera), cameras,
+                                               {o_.truth.map_points_per_m2, o_.truth.map_max_distance_m, seed_}));
   }
 
   void write_preview() const {
@@ -221,7 +226,6 @@ class CaptureRun {
   Scene scene_;
   PoseSpline path_;
   Eigen::Isometry3d T_imu_lidar_, T_imu_camera_;
-  SeenSurface seen_;
   double end_s_ = 0.0;
   std::vector<double> image_times_;
   std::vector<std::string> image_names_;

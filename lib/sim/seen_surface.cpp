@@ -1,43 +1,57 @@
-#include "sim/seen_surface.hpp"
+#include "cmap/sim/seen_surface.hpp"
 
-#include <cmath>
+#include <vector>
 
 #include "cmap/core/parallel.hpp"
+#include "sim/option_check.hpp"
+#include "sim/scene_data.hpp"
 
 namespace cmap {
 namespace {
 
-/// Whether the point is about as near as the middle of its pixel: most that is hidden is told by this, without a ray.
-bool may_be_shown(const CameraModel& camera, const Eigen::Vector3d& p, const Array<float>& depth_m) {
-  constexpr double kSlack_m = 0.3, kSlackFraction = 0.05;
-  const std::optional<Eigen::Vector2d> pixel = project(camera, p);
+constexpr double kTolerance_m = 0.01;
+
+struct SeenFrom {
+  Eigen::Isometry3d T_camera_world;
+  Eigen::Vector3d center;  ///< relative to the scene's origin
+};
+
+bool sees(const SceneData& scene, const CameraModel& camera, const SeenFrom& view, const Eigen::Vector3f& point,
+          double max_distance_m) {
+  const Eigen::Vector3d ray = point.cast<double>() - view.center;
+  const double distance = ray.norm();
+  if (distance > max_distance_m || distance < kTolerance_m) return false;
+  const auto pixel = project(camera, view.T_camera_world * Eigen::Vector3d(scene.mesh.origin + point.cast<double>()));
   if (!pixel || !is_inside(camera, *pixel)) return false;
-  const auto u = static_cast<std::size_t>(std::clamp<long>(std::lround(pixel->x()), 0, camera.width - 1));
-  const auto v = static_cast<std::size_t>(std::clamp<long>(std::lround(pixel->y()), 0, camera.height - 1));
-  const double front = depth_m[v * static_cast<std::size_t>(camera.width) + u];
-  return p.z() <= front * (1.0 + kSlackFraction) + kSlack_m;
+  const Ray to_point{view.center.cast<float>(), (ray / distance).cast<float>(),
+                     static_cast<float>(distance - kTolerance_m)};
+  return !scene.caster.is_blocked(to_point);
 }
 
 }  // namespace
 
-bool SeenSurface::is_reached(const Eigen::Vector3d& camera, const Eigen::Vector3d& point) const {
-  constexpr double kSlack_m = 0.01;  // float positions on surfaces seen at a slant
-  const Eigen::Vector3d way = point - camera;
-  const double distance = way.norm();
-  return !scene_.probe(camera, way / distance, distance - kSlack_m);
-}
-
-void SeenSurface::look(const CameraModel& camera, const Eigen::Isometry3d& T_world_camera, const Array<float>& depth_m,
-                       double max_depth_m) {
-  const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
-  parallel_chunks(samples_.size(), kLoopChunk, [&](std::size_t begin, std::size_t end) {
+PointCloud seen_surface(const Scene& scene, const CameraModel& camera,
+                        std::span<const Eigen::Isometry3d> T_world_camera, const SeenSurfaceOptions& options) {
+  check(camera);
+  require_between("max_distance_m", options.max_distance_m, 1e-3, 1e6);
+  const PointCloud cloud = sample_surface(scene, options.points_per_m2, options.seed);
+  const SceneData& data = scene.data();
+  std::vector<SeenFrom> views;
+  for (const Eigen::Isometry3d& pose : T_world_camera) {
+    views.push_back({pose.inverse(), pose.translation() - data.mesh.origin});
+  }
+  Array<std::uint8_t> keep(cloud.size());
+  parallel_chunks(cloud.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      if (seen_[i] != 0) continue;
-      const Eigen::Vector3d p = T_camera_world * samples_.world(i);
-      if (!(p.z() > 0.0 && p.z() <= max_depth_m) || !may_be_shown(camera, p, depth_m)) continue;
-      if (is_reached(T_world_camera.translation(), samples_.world(i))) seen_[i] = 1;
+      keep[i] = 0;
+      for (const SeenFrom& view : views) {
+        if (!sees(data, camera, view, cloud.positions[i], options.max_distance_m)) continue;
+        keep[i] = 1;
+        break;
+      }
     }
   });
+  return select(cloud, keep);
 }
 
 }  // namespace cmap

@@ -73,7 +73,7 @@ RgbF asphalt_texture(const Surface& s, const Eigen::Vector3f& p) {
   const float clean = smooth_step(0.0F, oil_radius * oil_radius, oil.sq_distance);
   const float crack = std::abs(coarse - 0.5F) < 0.003F ? 0.55F : 1.0F;
   const float tone =
-      varied(speckle, 0.24F) * varied(coarse, 0.40F) * patched(s, x, y) * crack * (0.68F + 0.32F * clean);
+      varied(speckle, 0.16F) * varied(coarse, 0.40F) * patched(s, x, y) * crack * (0.68F + 0.32F * clean);
   const auto [u, v] = uv_of(s, p);
   const float paint = road_paint(s, u, v);
   if (paint <= 0.0F) return times(s.base, tone);
@@ -105,12 +105,12 @@ RgbF grass_texture(const Surface& s, const Eigen::Vector3f& p) {
   if (flower.sq_distance < 0.0056F && unit_of(flower.id) < 0.22F * (1.0F - dry)) {
     return unit_of(mix_bits(flower.id)) < 0.5F ? RgbF{0.90F, 0.89F, 0.80F} : RgbF{0.88F, 0.78F, 0.18F};
   }
-  return times(color, varied(blades, 0.34F) * varied(tufts, 0.32F));
+  return times(color, varied(blades, 0.24F) * varied(tufts, 0.32F));
 }
 
 RgbF gravel_texture(const Surface& s, const Eigen::Vector3f& p) {
   const float stones = fractal_noise(19.0F * p.x(), 19.0F * p.y(), 2, s.seed + 51);
-  return times(s.base, varied(stones, 0.38F) * varied(fractal_noise(0.8F * p.x(), 0.8F * p.y(), 4, 52), 0.25F));
+  return times(s.base, varied(stones, 0.28F) * varied(fractal_noise(0.8F * p.x(), 0.8F * p.y(), 4, 52), 0.25F));
 }
 
 RgbF crop_texture(const Surface& s, const Eigen::Vector3f& p) {
@@ -126,7 +126,7 @@ RgbF crop_texture(const Surface& s, const Eigen::Vector3f& p) {
   const bool on_track = in_lane < 0.45F || (in_lane > 1.8F && in_lane < 2.25F);
   const RgbF color = mixed(s.base, s.accent, std::max(soil, on_track ? 0.85F : 0.0F));
   return times(color,
-               varied(plants, 0.30F) * varied(growth, 0.40F) * varied(value_noise(9.0F * u, 9.0F * v, s.seed), 0.18F));
+               varied(plants, 0.30F) * varied(growth, 0.40F) * varied(value_noise(9.0F * u, 9.0F * v, s.seed), 0.12F));
 }
 
 RgbF water_texture(const Surface& s, const Eigen::Vector3f& p) {

@@ -33,7 +33,7 @@ endforeach()
 
 # Every public header is installed and compiles in the consumer.
 file(GLOB_RECURSE headers RELATIVE ${CMAP_SOURCE_DIR}/include ${CMAP_SOURCE_DIR}/include/*.hpp)
-list(FILTER headers EXCLUDE REGEX "^cmap/(render|gl)/")  # not installed as libraries
+list(FILTER headers EXCLUDE REGEX "^cmap/(render|gl|sim)/")  # not installed as libraries
 set(includes "#include \"cmap/core/version.hpp\"\n")
 foreach(header IN LISTS headers)
   string(APPEND includes "#include \"${header}\"\n")

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cmap/core/error.hpp"
-#include "sim/sim_testing.hpp"
+#include "sim/sensor_testing.hpp"
 
 namespace cmap {
 namespace {

@@ -11,7 +11,7 @@
 #include "cmap/io/point_cloud_file.hpp"
 #include "cmap/io/session_predictions.hpp"
 #include "io/io_testing.hpp"
-#include "sim/sim_testing.hpp"
+#include "sim/sensor_testing.hpp"
 
 namespace cmap {
 namespace {
@@ -142,7 +142,7 @@ TEST(SimulateCapture, PredictionsLieOnTheSceneByTrueScaleAndPose) {
 TEST(SimulateCapture, TheTrueMapIsWhatPicturesSaw) {
   const TempFolder folder;
   CaptureOptions options = tiny(false);
-  options.truth.map_max_depth_m = 25.0;
+  options.truth.map_max_distance_m = 25.0;
   simulate_capture(options, folder / "capture");
   const PointCloud map = read_point_cloud(folder / "capture/truth/map.ply").cloud;
   const Trajectory truth = read_tum_trajectory(folder / "capture/truth/trajectory.tum");

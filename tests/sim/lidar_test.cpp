@@ -5,7 +5,7 @@
 
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
-#include "sim/sim_testing.hpp"
+#include "sim/sensor_testing.hpp"
 
 namespace cmap {
 namespace {

@@ -3,7 +3,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "sim/sim_testing.hpp"
+#include "sim/sensor_testing.hpp"
 
 namespace cmap {
 namespace {

@@ -1,50 +1,66 @@
 #pragma once
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <vector>
+#include <Eigen/Geometry>
+#include <random>
+#include <string>
 
-#include "cmap/sim/path.hpp"
+#include "cmap/core/camera_model.hpp"
+#include "cmap/core/parallel.hpp"
 #include "cmap/sim/scene.hpp"
-#include "sim/scene_builder.hpp"
+#include "io/io_testing.hpp"
 
 namespace cmap::testing {
 
-/// A swaying walk around a block, 60 m of it, in about a minute after 2 s of rest.
-inline PoseSpline walk(double speed_mps = 1.5) {
-  PathOptions options;
-  options.rest_s = 2.0;
-  options.speed_mps = speed_mps;
-  options.sway_position_m = 0.05;
-  options.sway_roll_deg = options.sway_pitch_deg = options.sway_yaw_deg = 3.0;
-  options.sway_frequency_hz = 0.8;
-  return make_path(block_route({-10, -8}, {10, 8}, 1.2, 15.0), options, 1);
+/// Uniform in [low, high), the same with every standard library.
+inline double uniform(std::mt19937_64& random, double low, double high) {
+  return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
 }
 
-/// A closed room from (-20,-16,-1) to (20,16,5) with one color per half: every visible point lies on one of six planes.
-inline const Eigen::Vector3f kRoomMin{-20.0F, -16.0F, -1.0F}, kRoomMax{20.0F, 16.0F, 5.0F};
-
-inline Scene room() {
-  SceneBuilder builder;
-  Surface wall;
-  wall.base = {0.7F, 0.6F, 0.5F};
-  builder.box(wall, kRoomMin, kRoomMax);
-  return builder.finish();
+/// An axis-aligned box as OBJ text, outward faces, vertices of one color.
+inline std::string box_obj(const Eigen::Vector3d& low, const Eigen::Vector3d& high, const char* color = "0.5 0.5 0.5") {
+  std::string text;
+  for (int i = 0; i < 8; ++i) {
+    text += fmt::format("v {:.17g} {:.17g} {:.17g} {}\n", (i & 1) ? high.x() : low.x(), (i & 2) ? high.y() : low.y(),
+                        (i & 4) ? high.z() : low.z(), color);
+  }
+  return text + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
 }
 
-/// Distance to the nearest of the room's planes.
-inline double distance_to_room(const Eigen::Vector3d& p) {
-  const Eigen::Array3d below = (p - kRoomMin.cast<double>()).array().abs();
-  const Eigen::Array3d above = (p - kRoomMax.cast<double>()).array().abs();
-  return below.min(above).minCoeff();
+/// Looking along `forward`, the image's top up.
+inline Eigen::Isometry3d looking(const Eigen::Vector3d& from, const Eigen::Vector3d& forward) {
+  const Eigen::Vector3d z = forward.normalized(), x = z.cross(Eigen::Vector3d::UnitZ()).normalized();
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() << x, z.cross(x), z;
+  pose.translation() = from;
+  return pose;
 }
 
-inline double rms(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double v : values) sum += v * v;
-  return std::sqrt(sum / static_cast<double>(values.size()));
+inline CameraModel pinhole(int width, int height, double focal_px) {
+  CameraModel camera;
+  camera.width = width;
+  camera.height = height;
+  camera.fx = camera.fy = focal_px;
+  camera.cx = 0.5 * (width - 1);
+  camera.cy = 0.5 * (height - 1);
+  return camera;
+}
+
+/// The scenes as most tests use them, made once.
+inline const Scene& town() {
+  static const Scene scene = make_town({});
+  return scene;
+}
+inline const Scene& indoor() {
+  static const Scene scene = make_indoor({});
+  return scene;
+}
+inline const Scene& aerial() {
+  static const Scene scene = make_aerial({});
+  return scene;
 }
 
 }  // namespace cmap::testing
