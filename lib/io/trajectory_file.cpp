@@ -136,13 +136,17 @@ Trajectory read_camera_poses(const std::filesystem::path& poses, const std::opti
 
 void write_tum_trajectory(const Trajectory& trajectory, const std::filesystem::path& path) {
   OutputFile file(path);
+  write_tum_trajectory(trajectory, file);
+  file.commit();
+}
+
+void write_tum_trajectory(const Trajectory& trajectory, OutputFile& file) {
   file.write("# timestamp_s tx ty tz qx qy qz qw\n");
   for (const StampedPose& pose : trajectory) {
     const auto& p = pose.position;
     const auto& q = pose.rotation;
     file.write(fmt::format("{} {} {} {} {} {} {} {}\n", pose.time_s, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()));
   }
-  file.commit();
 }
 
 }  // namespace cmap

@@ -21,7 +21,7 @@ Sim3IcpOptions options_for(Registration registration, double voxel_m, double sig
 }
 
 /// How well the session's points lie on the LiDAR's, whatever moved them there: matches within three voxels.
-void measure_fit(const PointCloud& session, const Bvh& lidar, double voxel_m, SessionRegistration& result) {
+void measure_fit(const PointCloud& session, const Bvh& lidar, double voxel_m, LidarRegistration& result) {
   const PointCloud thinned = voxel_thinned(session, voxel_m);
   const NearestField nearest = find_nearest(lidar, sort_points(thinned));
   const double sq_gate_m2 = 9.0 * voxel_m * voxel_m;
@@ -35,8 +35,8 @@ void measure_fit(const PointCloud& session, const Bvh& lidar, double voxel_m, Se
   result.rmse_m = result.n_matches > 0 ? std::sqrt(sum_m2 / static_cast<double>(result.n_matches)) : 0.0;
 }
 
-SessionRegistration kept(const Similarity& T_world_session, std::string why) {
-  SessionRegistration result;
+LidarRegistration kept(const Similarity& T_world_session, std::string why) {
+  LidarRegistration result;
   result.T_world_session = T_world_session;
   result.accepted = false;
   result.flags.push_back(std::move(why));
@@ -57,15 +57,14 @@ std::string_view registration_name(Registration registration) { return kNames[st
 namespace {
 
 /// Without a measure of the fit.
-SessionRegistration moved_session(const SessionCloud& session, const PointCloud& lidar,
-                                  const Similarity& T_world_session, Registration registration, double voxel_m,
-                                  double sigma_m) {
+LidarRegistration moved_session(const SessionCloud& session, const PointCloud& lidar, const Similarity& T_world_session,
+                                Registration registration, double voxel_m, double sigma_m) {
   const bool with_weights = registration == Registration::kRobust;
   try {
     const Sim3Alignment found =
         sim3_icp(session.cloud, lidar, Eigen::Matrix4d::Identity(), options_for(registration, voxel_m, sigma_m),
                  with_weights ? std::span<const float>(session.confidence) : std::span<const float>{});
-    SessionRegistration result;
+    LidarRegistration result;
     result.T_world_session = similarity_from(found.T_dst_src) * T_world_session;
     result.scale_change = found.scale;
     result.iterations = found.iterations;
@@ -79,12 +78,12 @@ SessionRegistration moved_session(const SessionCloud& session, const PointCloud&
 
 }  // namespace
 
-SessionRegistration register_session(const SessionCloud& session, const PointCloud& lidar,
-                                     const Similarity& T_world_session, Registration registration, double voxel_m,
-                                     double sigma_m) {
+LidarRegistration register_on_lidar(const SessionCloud& session, const PointCloud& lidar,
+                                    const Similarity& T_world_session, Registration registration, double voxel_m,
+                                    double sigma_m) {
   if (session.cloud.positions.empty()) return kept(T_world_session, "the session has no points");
   if (lidar.positions.empty()) return kept(T_world_session, "the LiDAR has no points at the session's time");
-  SessionRegistration result;
+  LidarRegistration result;
   result.T_world_session = T_world_session;
   if (registration != Registration::kPrefusion) {
     result = moved_session(session, lidar, T_world_session, registration, voxel_m, sigma_m);

@@ -6,7 +6,7 @@
 #include "cmap/sim/lidar.hpp"
 #include "cmap/sim/path.hpp"
 #include "cmap/sim/predictions.hpp"
-#include "sim/option_fields.hpp"
+#include "core/option_fields.hpp"
 
 /// Names and ranges of all options of the sensors: `Fields` is a visitor of option_fields.hpp, `Options` may be const.
 namespace cmap {

@@ -5,6 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "cmap/io/output_file.hpp"
+
 namespace cmap {
 
 /// Where something was at one time: x_world = rotation x_body + position.
@@ -36,5 +38,8 @@ Trajectory read_camera_poses(const std::filesystem::path& poses,
 /// Writes a TUM file whose numbers read back as they were. The file appears under its name only when complete. Throws
 /// UsageError if it cannot be written.
 void write_tum_trajectory(const Trajectory& trajectory, const std::filesystem::path& path);
+
+/// The same into a file that the caller commits.
+void write_tum_trajectory(const Trajectory& trajectory, OutputFile& file);
 
 }  // namespace cmap

@@ -12,7 +12,6 @@ namespace cmap {
 struct LidarMapOptions {
   double voxel_m = 0.1;      ///< the map is thinned to this
   double min_range_m = 0.5;  ///< nearer returns are the carrier's own
-  double max_gap_s = 0.15;   ///< poses farther apart are not interpolated between
   double margin_s = 1.0;     ///< scans this long before and after a session belong to it
 };
 
@@ -20,7 +19,7 @@ struct LidarMapOptions {
 /// between poses, rotations along the shortest arc. Points at times without a pose are left out. An empty cloud gets
 /// its origin from the first point.
 void add_deskewed(const LidarScan& scan, const Trajectory& world_T_imu, const Eigen::Isometry3d& T_imu_lidar,
-                  const LidarMapOptions& options, PointCloud& cloud);
+                  const LidarMapOptions& options, double max_gap_s, PointCloud& cloud);
 
 /// The scans of a capture from first_s to last_s, margins added, as one map in the world frame.
 struct LidarMap {
@@ -32,6 +31,8 @@ struct LidarMap {
 
 /// Throws InputError where a scan cannot be read. An empty cloud where no scan or pose belongs to this time.
 /// Thread-safe.
-LidarMap lidar_map(const Capture& capture, double first_s, double last_s, const LidarMapOptions& options);
+/// @param max_gap_s  poses farther apart are not interpolated between
+LidarMap lidar_map(const Capture& capture, double first_s, double last_s, const LidarMapOptions& options,
+                   double max_gap_s = 0.15);
 
 }  // namespace cmap

@@ -23,7 +23,7 @@ Registration registration_from_name(std::string_view name);
 std::string_view registration_name(Registration registration);
 
 /// The registration of one session onto the LiDAR.
-struct SessionRegistration {
+struct LidarRegistration {
   Similarity T_world_session;  ///< the session as it is afterwards
   double scale_change = 1.0;   ///< s2: of the registration alone
   double overlap = 0.0;        ///< share of the session's points that match
@@ -38,8 +38,8 @@ struct SessionRegistration {
 /// scale change 1). Nothing throws for lack of overlap: the session stays and is flagged.
 /// @param session  in the world, by pre-fusion, with confidences
 /// @param sigma_m  RMSE of its camera centers in pre-fusion
-SessionRegistration register_session(const SessionCloud& session, const PointCloud& lidar,
-                                     const Similarity& T_world_session, Registration registration, double voxel_m,
-                                     double sigma_m);
+LidarRegistration register_on_lidar(const SessionCloud& session, const PointCloud& lidar,
+                                    const Similarity& T_world_session, Registration registration, double voxel_m,
+                                    double sigma_m);
 
 }  // namespace cmap

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cmap/core/point_cloud.hpp"
+#include "cmap/core/progress.hpp"
+#include "cmap/core/warning.hpp"
+#include "cmap/io/capture.hpp"
+#include "cmap/recon/options.hpp"
+#include "cmap/recon/session_graph.hpp"
+
+namespace cmap {
+
+enum class Stage { kPrefusion, kRegistration, kPoseGraph, kFusion };
+
+/// "prefusion", "registration", "posegraph" or "fusion". Throws UsageError for anything else.
+Stage stage_from_name(std::string_view name);
+
+/// What became of one session.
+struct SessionOutcome {
+  std::size_t index = 0;  ///< of the capture's sessions
+  std::string name;
+  std::size_t frames = 0;
+  double scale_prefusion = 0.0;                                          ///< s1 after voting
+  double scale_registration = 1.0;                                       ///< s2
+  double scale() const { return scale_prefusion * scale_registration; }  ///< meters in the session's unit
+  double linearity = 0.0;
+  bool rotation_corrected = false;
+  bool scale_inlier = true;
+  double prefusion_rmse_m = 0.0;   ///< of its camera centers
+  double overlap = 0.0;            ///< with the LiDAR
+  double rmse_m = 0.0;             ///< of these matches
+  std::vector<std::string> flags;  ///< doubts, for people
+  std::string dropped;             ///< why it is not in the map; empty: it is
+};
+
+/// What a reconstruction found, as far as it was asked to go.
+struct Reconstruction {
+  std::vector<SessionOutcome> sessions;
+  std::vector<PlacedSession> prefusion, registration, poses;  ///< of the sessions in the map, after each stage
+  std::vector<SessionLink> links;
+  double graph_cost_before = 0.0, graph_cost_after = 0.0;
+  int graph_iterations = 0;
+  double largest_correction_m = 0.0;  ///< of a camera by the pose graph
+  PointCloud map;
+  std::uint64_t points_fused = 0;
+  Trajectory trajectory;  ///< world_T_imu at the frames' times
+  std::vector<Warning> warnings;
+  std::vector<std::pair<std::string, double>> stage_seconds;
+};
+
+struct ReconstructionRun {
+  Stage last = Stage::kFusion;
+  std::optional<std::size_t> only_session;
+  std::filesystem::path stages;  ///< folder of what earlier runs found and this one finds; empty: none
+  bool resume = false;           ///< take from there what was found from the same inputs and options
+  ProgressSink progress;
+};
+
+/// Sessions of VGGT predictions, LiDAR scans and LiDAR-inertial poses become one metric colored map: pre-fusion,
+/// registration, pose graph, fusion (PIPELINE). One session is in memory at a time, two for their links; the fused map
+/// bounds the rest. The same bytes for any number of threads.
+/// A session that cannot be read or placed is dropped, with the reason in its outcome and a warning. Throws InputError
+/// where the capture has no sessions or no LiDAR-inertial poses, UnsupportedError where fewer than half of the frames
+/// are left.
+Reconstruction reconstruct(const Capture& capture, const ReconstructionOptions& options,
+                           const ReconstructionRun& run = {});
+
+/// As sessions.json.
+nlohmann::ordered_json sessions_json(const Reconstruction& reconstruction);
+
+}  // namespace cmap

@@ -1,0 +1,123 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cmap/core/error.hpp"
+#include "cmap/recon/overlap_scale.hpp"
+#include "recon/session_state.hpp"
+
+namespace cmap {
+namespace {
+
+CameraMount mount_of(const Capture& capture) {
+  return {capture.calibration.T_imu_lidar, capture.calibration.T_lidar_camera};
+}
+
+std::span<const float> plane(const Array<float>& values, std::size_t frame, std::size_t size) {
+  return std::span<const float>(values).subspan(frame * size, size);
+}
+
+/// Scale of b over that of a from the frames of both.
+std::optional<ScaleRatio> scale_ratio(const SessionPredictions& a, const SessionPredictions& b, OverlapScale by) {
+  constexpr double kSameTime_s = 1e-4;
+  std::vector<SharedFrame> depths;
+  std::vector<Eigen::Vector3d> centers_a, centers_b;
+  for (std::size_t i = 0; i < a.frame_count(); ++i) {
+    for (std::size_t j = 0; j < b.frame_count(); ++j) {
+      if (std::abs(a.frames[i].time_s - b.frames[j].time_s) > kSameTime_s) continue;
+      centers_a.push_back(a.T_camera_session[i].inverse().translation());
+      centers_b.push_back(b.T_camera_session[j].inverse().translation());
+      if (a.width != b.width || a.height != b.height) continue;
+      const std::size_t size = a.pixels_per_frame();
+      depths.push_back({plane(a.depth, i, size), plane(a.depth_confidence, i, size), plane(b.depth, j, size),
+                        plane(b.depth_confidence, j, size)});
+    }
+  }
+  return by == OverlapScale::kCenters ? scale_ratio_of_centers(centers_a, centers_b) : scale_ratio_of_depths(depths);
+}
+
+/// A session's name, frames and confidence; or why it is dropped. The predictions stay for the overlap with the next.
+struct ReadSession {
+  SessionState state;
+  std::vector<SessionFrame> frames;
+  std::optional<SessionPredictions> predictions;
+};
+
+ReadSession read_session(const Capture& capture, std::size_t index, const ReconstructionOptions& options) {
+  ReadSession session;
+  SessionOutcome& outcome = session.state.outcome;
+  outcome.index = index;
+  outcome.name = capture.sessions[index].filename().string();
+  try {
+    session.predictions = read_session_predictions(capture.sessions[index]);
+    outcome.frames = session.predictions->frame_count();
+    for (const Warning& warning : session.predictions->warnings) outcome.flags.push_back(warning.message);
+    session.frames = frames_of(*session.predictions);
+    session.state.min_confidence = confidence_threshold(*session.predictions, options.confidence, options.points);
+    std::vector<double> times_s;
+    for (const SessionFrame& frame : session.frames) times_s.push_back(frame.time_s);
+    const auto poses =
+        camera_poses(capture.lio, mount_of(capture), times_s, options.prefusion.pairing, options.prefusion.max_gap_s);
+    const auto n_placed = std::ranges::count_if(poses, [](const auto& pose) { return pose.has_value(); });
+    if (n_placed == 0) throw UnsupportedError("no frame has a LiDAR-inertial pose at its time");
+    if (n_placed < static_cast<std::ptrdiff_t>(poses.size())) {
+      outcome.flags.push_back(fmt::format("{} of {} frames have no LiDAR-inertial pose",
+                                          static_cast<std::ptrdiff_t>(poses.size()) - n_placed, poses.size()));
+    }
+  } catch (const Error& error) {
+    outcome.dropped = error.what();
+    session.predictions.reset();
+  }
+  return session;
+}
+
+/// What pre-fusion found for the k-th session that is kept.
+void tell(const PreFusion& found, std::size_t k, const SessionRegistrationOptions& options, SessionState& state) {
+  const SessionRegistration& registration = found.registrations[k];
+  SessionOutcome& outcome = state.outcome;
+  state.T_world_session = found.T_world_session[k];
+  outcome.scale_prefusion = state.T_world_session.scale;
+  outcome.linearity = registration.linearity;
+  outcome.rotation_corrected =
+      options.rotation == RotationCorrection::kJoint || registration.linearity > options.linearity_threshold;
+  outcome.scale_inlier = found.voted.is_inlier[k] != 0;
+  outcome.prefusion_rmse_m = registration.position_rmse_m;
+  outcome.flags.insert(outcome.flags.end(), registration.warnings.begin(), registration.warnings.end());
+  if (!registration.has_baseline) outcome.flags.push_back("no baseline: the scale is that of its neighbors");
+}
+
+}  // namespace
+
+std::vector<SessionState> pre_fuse_sessions(const Capture& capture, const ReconstructionOptions& options,
+                                            std::optional<std::size_t> only_session, const ProgressSink& progress) {
+  std::vector<SessionState> sessions;
+  std::vector<std::vector<SessionFrame>> frames;  // of those that are kept
+  std::vector<std::optional<ScaleRatio>> ratios;  // between one of these and the next
+  std::vector<std::size_t> kept;
+  std::optional<SessionPredictions> before;
+  for (std::size_t index = 0; index < capture.sessions.size(); ++index) {
+    if (only_session && *only_session != index) continue;
+    if (progress) progress("pre-fusion", static_cast<double>(index) / static_cast<double>(capture.sessions.size()));
+    ReadSession session = read_session(capture, index, options);
+    if (session.state.is_kept()) {
+      if (!kept.empty()) {
+        ratios.push_back(before ? scale_ratio(*before, *session.predictions, options.overlap_scale) : std::nullopt);
+      }
+      kept.push_back(sessions.size());
+      frames.push_back(std::move(session.frames));
+    }
+    before = std::move(session.predictions);
+    sessions.push_back(std::move(session.state));
+  }
+  if (kept.empty()) return sessions;
+  const PreFusion found = pre_fuse(frames, capture.lio, mount_of(capture), ratios, options.prefusion);
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    SessionState& state = sessions[kept[k]];
+    tell(found, k, options.prefusion.registration, state);
+    state.placed =
+        placed_session(state.outcome.index, frames[k], state.T_world_session, state.outcome.prefusion_rmse_m);
+  }
+  return sessions;
+}
+
+}  // namespace cmap

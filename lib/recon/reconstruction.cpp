@@ -1,0 +1,199 @@
+#include "cmap/recon/reconstruction.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <map>
+
+#include "cmap/core/error.hpp"
+#include "cmap/core/version.hpp"
+#include "cmap/recon/fusion.hpp"
+#include "recon/session_state.hpp"
+#include "recon/stage_files.hpp"
+
+namespace cmap {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// What a later run must share to go on from this one's stages: the files by name, size and time of change, and the
+/// options.
+Json run_key(const Capture& capture, const ReconstructionOptions& options, const ReconstructionRun& run) {
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(capture.folder)) {
+    if (!entry.is_regular_file()) continue;
+    files.push_back(fmt::format("{} {} {}", entry.path().lexically_relative(capture.folder).string(), entry.file_size(),
+                                entry.last_write_time().time_since_epoch().count()));
+  }
+  std::ranges::sort(files);
+  return {{"version", kVersion},
+          {"options", to_json(options)},
+          {"only_session", run.only_session ? Json(*run.only_session) : Json(nullptr)},
+          {"files", files}};
+}
+
+std::vector<PlacedSession> placed_of(const std::vector<SessionState>& sessions) {
+  std::vector<PlacedSession> placed;
+  for (const SessionState& session : sessions) {
+    if (session.is_kept()) placed.push_back(session.placed);
+  }
+  return placed;
+}
+
+/// A map that silently misses half of the capture helps nobody.
+void require_enough(const std::vector<SessionState>& sessions) {
+  std::size_t n_all = 0, n_kept = 0;
+  std::string first_reason;
+  for (const SessionState& session : sessions) {
+    ++n_all;
+    if (session.is_kept()) ++n_kept;
+    if (!session.is_kept() && first_reason.empty()) {
+      first_reason = fmt::format("{}: {}", session.outcome.name, session.outcome.dropped);
+    }
+  }
+  if (2 * n_kept >= n_all && n_kept > 0) return;
+  throw UnsupportedError(
+      fmt::format("{} of {} sessions had to be dropped; the first, {}", n_all - n_kept, n_all, first_reason));
+}
+
+void optimize_poses(const ReconstructionOptions& options, Reconstruction& result) {
+  const PoseGraph graph = session_graph(result.poses, result.links, {.lidar_priors = options.lidar_priors});
+  const PoseGraphResult found = optimize(graph);
+  result.graph_cost_before = found.initial_cost;
+  result.graph_cost_after = found.final_cost;
+  result.graph_iterations = found.iterations;
+  for (std::size_t node = 0; node < graph.poses.size(); ++node) {
+    const double moved_m = (found.poses[node].translation() - graph.poses[node].translation()).norm();
+    result.largest_correction_m = std::max(result.largest_correction_m, moved_m);
+  }
+  if (!found.converged) result.warnings.push_back({"pose_graph_not_converged", "the pose graph had not settled"});
+  for (const std::string& warning : found.warnings) result.warnings.push_back({"pose_graph", warning});
+  result.poses = with_poses(result.poses, found.poses);
+}
+
+/// world_T_imu at every frame's time, from the session in which the frame is farthest from an end.
+Trajectory trajectory_of(const std::vector<PlacedSession>& sessions, const CaptureCalibration& calibration) {
+  const Eigen::Isometry3d T_camera_imu = (calibration.T_imu_lidar * calibration.T_lidar_camera).inverse();
+  struct Choice {
+    std::size_t from_end = 0;
+    Eigen::Isometry3d T_world_camera;
+  };
+  std::map<double, Choice> choices;
+  for (const PlacedSession& session : sessions) {
+    const std::size_t n = session.time_s.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t from_end = std::min(i, n - 1 - i);
+      const auto [place, is_new] = choices.try_emplace(session.time_s[i], Choice{from_end, session.T_world_camera[i]});
+      if (!is_new && from_end > place->second.from_end) place->second = {from_end, session.T_world_camera[i]};
+    }
+  }
+  Trajectory trajectory;
+  for (const auto& [time_s, choice] : choices) {
+    const Eigen::Isometry3d T_world_imu = choice.T_world_camera * T_camera_imu;
+    trajectory.push_back({time_s, T_world_imu.translation(), Eigen::Quaterniond(T_world_imu.linear())});
+  }
+  return trajectory;
+}
+
+void fuse(const Capture& capture, const ReconstructionOptions& options, const std::vector<SessionState>& sessions,
+          const ProgressSink& progress, Reconstruction& result) {
+  MapFusion fusion(options.fusion_voxel_m);
+  std::size_t k = 0;
+  for (const SessionState& state : sessions) {
+    if (!state.is_kept()) continue;
+    if (progress) progress("fusion", static_cast<double>(k) / static_cast<double>(result.poses.size()));
+    const PlacedSession& placed = result.poses[k++];
+    const SessionPredictions session = read_session_predictions(capture.sessions[state.outcome.index]);
+    for (std::size_t i = 0; i < session.frame_count(); ++i) {
+      fusion.add(frame_points(session, i, state.min_confidence, options.points), placed.T_world_camera[i],
+                 placed.scale);
+    }
+  }
+  result.points_fused = fusion.points_added();
+  result.map = fusion.finish();
+}
+
+void check_inputs(const Capture& capture, const ReconstructionRun& run) {
+  if (capture.sessions.empty()) {
+    throw InputError(fmt::format("{}: no sessions of predictions", (capture.folder / "predictions").string()));
+  }
+  if (capture.lio.empty()) {
+    throw InputError(
+        fmt::format("{}: missing; LiDAR-inertial poses are needed", (capture.folder / "lio.tum").string()));
+  }
+  if (run.only_session && *run.only_session >= capture.sessions.size()) {
+    throw UsageError(
+        fmt::format("there is no session {}: the capture has {}", *run.only_session, capture.sessions.size()));
+  }
+}
+
+}  // namespace
+
+Stage stage_from_name(std::string_view name) {
+  constexpr std::array<std::string_view, 4> kNames{"prefusion", "registration", "posegraph", "fusion"};
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    if (kNames[i] == name) return static_cast<Stage>(i);
+  }
+  throw UsageError(fmt::format("stage \"{}\" is none of prefusion, registration, posegraph, fusion", name));
+}
+
+Reconstruction reconstruct(const Capture& capture, const ReconstructionOptions& options, const ReconstructionRun& run) {
+  check_inputs(capture, run);
+  const StageFiles stages(run.stages, run.resume, run_key(capture, options, run));
+  std::vector<SessionState> sessions;
+  Reconstruction result;
+  result.warnings = capture.warnings;
+  const auto timed = [&](const char* stage, auto&& work) {
+    if (run.progress) run.progress(stage, 0.0);
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    result.stage_seconds.emplace_back(stage,
+                                      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  };
+  // Takes what an earlier run found, or finds it and keeps it.
+  const auto staged = [&](const char* stage, auto&& work) {
+    timed(stage, [&] {
+      if (const auto found = stages.load(stage)) {
+        sessions.clear();
+        result.links.clear();
+        read_state(*found, sessions, result.links);
+      } else {
+        work();
+        stages.save(stage, written(sessions, result.links));
+      }
+    });
+    result.poses = placed_of(sessions);
+  };
+  staged("pre-fusion", [&] { sessions = pre_fuse_sessions(capture, options, run.only_session, run.progress); });
+  require_enough(sessions);
+  result.prefusion = result.poses;
+  if (run.last >= Stage::kRegistration) {
+    staged("registration", [&] { result.links = register_sessions(capture, options, sessions, run.progress); });
+    result.registration = result.poses;
+  }
+  if (run.last >= Stage::kPoseGraph && options.pose_graph)
+    timed("pose graph", [&] { optimize_poses(options, result); });
+  result.trajectory = trajectory_of(result.poses, capture.calibration);
+  if (run.last >= Stage::kFusion) timed("fusion", [&] { fuse(capture, options, sessions, run.progress, result); });
+  for (const SessionState& session : sessions) {
+    result.sessions.push_back(session.outcome);
+    const SessionOutcome& outcome = session.outcome;
+    if (!outcome.dropped.empty()) {
+      result.warnings.push_back({"session_dropped", fmt::format("{}: dropped: {}", outcome.name, outcome.dropped)});
+    }
+    for (const std::string& flag : outcome.flags) {
+      result.warnings.push_back({"session_flag", fmt::format("{}: {}", outcome.name, flag)});
+    }
+  }
+  return result;
+}
+
+Json sessions_json(const Reconstruction& reconstruction) {
+  Json sessions = Json::array();
+  for (const SessionOutcome& outcome : reconstruction.sessions) sessions.push_back(written(outcome));
+  return {{"sessions", sessions}};
+}
+
+}  // namespace cmap

@@ -1,0 +1,36 @@
+#include "recon/stage_files.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+#include "cmap/core/error.hpp"
+#include "cmap/io/output_file.hpp"
+
+namespace cmap {
+
+namespace fs = std::filesystem;
+
+StageFiles::StageFiles(fs::path folder, bool resume, Json key)
+    : folder_(std::move(folder)), resume_(resume), key_(std::move(key)) {}
+
+std::optional<StageFiles::Json> StageFiles::load(const std::string& stage) const {
+  if (!resume_ || folder_.empty()) return std::nullopt;
+  std::ifstream file(folder_ / (stage + ".json"));
+  // Whatever is not as this program wrote it is found again.
+  Json json = Json::parse(file, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_object() || !json.contains("key") || json["key"] != key_ || !json.contains("found")) return std::nullopt;
+  return json["found"];
+}
+
+void StageFiles::save(const std::string& stage, const Json& found) const {
+  if (folder_.empty()) return;
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  if (error) throw UsageError(fmt::format("{}: cannot be made: {}", folder_.string(), error.message()));
+  OutputFile file(folder_ / (stage + ".json"));
+  file.write(Json{{"key", key_}, {"found", found}}.dump(1) + "\n");
+  file.commit();
+}
+
+}  // namespace cmap

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+namespace cmap {
+
+/// What the stages of a run found, for a later run to go on from: one JSON file for each stage, with the key of what it
+/// was found from. An empty folder name keeps nothing.
+class StageFiles {
+ public:
+  using Json = nlohmann::ordered_json;
+
+  StageFiles(std::filesystem::path folder, bool resume, Json key);
+
+  /// What an earlier run found from the same key; none unless resuming.
+  std::optional<Json> load(const std::string& stage) const;
+  void save(const std::string& stage, const Json& found) const;
+
+ private:
+  std::filesystem::path folder_;
+  bool resume_;
+  Json key_;
+};
+
+}  // namespace cmap

@@ -1,0 +1,193 @@
+// cmap_recon CAPTURE -o DIR: sessions of VGGT predictions and LiDAR become one metric colored map.
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "cmap/core/version.hpp"
+#include "cmap/eval/protocol.hpp"
+#include "cmap/io/point_cloud_file.hpp"
+#include "cmap/recon/reconstruction.hpp"
+#include "cmap/report/figure_module.hpp"
+#include "cmap/report/report.hpp"
+#include "files.hpp"
+#include "program.hpp"
+
+namespace {
+
+using cmap::ExitCode;
+namespace fs = std::filesystem;
+
+constexpr const char* kDescription =
+    "Reconstructs a metric colored map from a capture: VGGT predictions in sessions of unknown scale, LiDAR scans and\n"
+    "LiDAR-inertial poses. Pre-fusion by poses, registration of each session onto the LiDAR (Sim(3) with an expected\n"
+    "scale), pose graph, fusion. Writes map.ply, trajectory.tum (world_T_imu), sessions.json and report.json to DIR.";
+
+constexpr const char* kExample =
+    "Example:\n"
+    "  cmap_simulate small_town -o capture\n"
+    "  cmap_recon capture -o map --evaluate capture/truth/map.ply\n"
+    "\n"
+    "Exit codes: 0 done; 2 wrong usage or configuration; 3 an input is missing or malformed; 4 the capture does not\n"
+    "support a map: fewer than half of its sessions can be placed; 70 internal error.";
+
+struct Arguments {
+  std::string capture, output, preset = "default", config, stop_after = "fusion", reference;
+  std::vector<std::string> settings;
+  std::string registration;
+  int only_session = -1;
+  bool resume = false, print_options = false;
+  cmap::CommonArguments common;
+};
+
+void add_options(CLI::App& app, Arguments& a) {
+  app.add_option("CAPTURE", a.capture, "folder of a capture")->type_name("DIR");
+  app.add_option("-o,--output", a.output, "folder for the results; made if need be")->type_name("DIR");
+  app.add_option("--evaluate", a.reference, "reference map: also evaluation.json and evaluation.png")->type_name("REF");
+  app.add_option("--registration", a.registration, "prefusion (none), normal, paper or robust [robust]")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"prefusion", "normal", "paper", "robust"}).description(""));
+  app.add_option("--preset", a.preset, "default, or paper: the method as printed [default]")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"default", "paper"}).description(""));
+  app.add_option("--config", a.config, "JSON file of options, see --print-options")->type_name("FILE");
+  app.add_option("--set", a.settings, "one option by its name; may be repeated")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  app.add_flag("--print-options", a.print_options, "all options as JSON, and nothing else");
+  app.add_option("--stop-after", a.stop_after, "prefusion, registration, posegraph or fusion [fusion]")
+      ->type_name("STAGE")
+      ->check(CLI::IsMember({"prefusion", "registration", "posegraph", "fusion"}).description(""));
+  app.add_option("--only-session", a.only_session, "reconstruct this session alone")
+      ->type_name("K")
+      ->check(CLI::Range(0, 1'000'000).description(""));
+  app.add_flag("--resume", a.resume, "go on from the stages that an earlier run of the same inputs left in DIR");
+  cmap::add_common_options(app, a.common, "no table and no progress");
+  cmap::refuse_empty(app, {"--output", "--evaluate", "--config", "--set"});
+}
+
+cmap::ReconstructionOptions resolve_options(const Arguments& a) {
+  cmap::ReconstructionOptions options;
+  cmap::apply_reconstruction_preset(options, a.preset);
+  if (!a.config.empty()) cmap::apply_reconstruction_config_file(options, a.config);
+  for (const std::string& setting : a.settings) cmap::set_reconstruction_option(options, setting);
+  if (!a.registration.empty()) options.registration = cmap::registration_from_name(a.registration);
+  return options;
+}
+
+/// The map against a reference, which is in the capture's world: no alignment.
+struct MapEvaluation {
+  cmap::Evaluation evaluation;
+  nlohmann::ordered_json report;
+};
+
+MapEvaluation evaluate_map(const Arguments& a, const cmap::PointCloud& map, const std::string& command) {
+  cmap::PointCloudFile reference = cmap::read_point_cloud(a.reference, {.sha256 = true});
+  cmap::PointCloudFile estimate{map, {}};
+  estimate.info.path = (fs::path(a.output) / "map.ply").string();
+  estimate.info.format = "reconstruction";
+  estimate.info.points = estimate.info.finite_points = map.size();
+  const cmap::InputDescription about_reference = describe(reference), about_estimate = describe(estimate);
+  MapEvaluation result{cmap::evaluate_by_protocol(std::move(reference.cloud), std::move(estimate.cloud), {}), {}};
+  result.report = cmap::make_report(about_reference, about_estimate, result.evaluation, {.command = command});
+  return result;
+}
+
+nlohmann::ordered_json report_json(const cmap::Reconstruction& r, const cmap::ReconstructionOptions& options,
+                                   const std::string& command) {
+  nlohmann::ordered_json warnings = nlohmann::ordered_json::array(), stages = nlohmann::ordered_json::object();
+  for (const cmap::Warning& w : r.warnings) warnings.push_back({{"id", w.id}, {"message", w.message}});
+  for (const auto& [stage, seconds] : r.stage_seconds) stages[stage] = seconds;
+  return {{"schema", "cmap.reconstruction/1"},
+          {"tool", {{"name", "cmap"}, {"version", cmap::kVersion}}},
+          {"options", cmap::to_json(options)},
+          {"sessions", cmap::sessions_json(r).at("sessions")},
+          {"pose_graph",
+           {{"links", r.links.size()},
+            {"cost_before", r.graph_cost_before},
+            {"cost_after", r.graph_cost_after},
+            {"iterations", r.graph_iterations},
+            {"largest_correction_m", r.largest_correction_m}}},
+          {"map", {{"points", r.map.size()}, {"points_fused", r.points_fused}}},
+          {"warnings", warnings},
+          {"run", {{"command", command}, {"stages", stages}}}};
+}
+
+std::string table(const cmap::Reconstruction& r) {
+  std::string text = "session        frames  scale s1      s2  linearity  inlier  overlap   RMSE m\n";
+  for (const cmap::SessionOutcome& s : r.sessions) {
+    text += fmt::format("{:<14} {:>6}", s.name, s.frames);
+    text += s.dropped.empty()
+                ? fmt::format("  {:>8.4g}  {:>6.4f}  {:>9.4f}  {:>6}  {:>7.3f}  {:>7.3f}\n", s.scale_prefusion,
+                              s.scale_registration, s.linearity, s.scale_inlier ? "yes" : "no", s.overlap, s.rmse_m)
+                : "  dropped: " + s.dropped + "\n";
+  }
+  if (r.map.size() > 0) text += fmt::format("map: {} points of {} pixels\n", r.map.size(), r.points_fused);
+  for (const auto& [stage, seconds] : r.stage_seconds) text += fmt::format("{}: {:.1f} s\n", stage, seconds);
+  return text;
+}
+
+void deliver(const Arguments& a, const cmap::Reconstruction& r, const cmap::ReconstructionOptions& options,
+             const std::string& command) {
+  const fs::path folder(a.output);
+  cmap::OutputFiles files;
+  if (a.stop_after == "fusion") {
+    files.add(folder / "map.ply", [&](cmap::OutputFile& file) { cmap::write_ply(file, r.map); });
+  }
+  files.add(folder / "trajectory.tum", [&](cmap::OutputFile& file) { cmap::write_tum_trajectory(r.trajectory, file); });
+  files.add(folder / "sessions.json",
+            [&](cmap::OutputFile& file) { file.write(cmap::sessions_json(r).dump(2) + "\n"); });
+  files.add(folder / "report.json",
+            [&](cmap::OutputFile& file) { file.write(report_json(r, options, command).dump(2) + "\n"); });
+  std::string text = table(r);
+  if (!a.reference.empty() && a.stop_after == "fusion") {
+    const MapEvaluation evaluated = evaluate_map(a, r.map, command);
+    files.add(folder / "evaluation.json", [&](cmap::OutputFile& file) { file.write(evaluated.report.dump(2) + "\n"); });
+    files.add(folder / "evaluation.png", [&](cmap::OutputFile& file) {
+      cmap::FigureModule().write(evaluated.evaluation, "evaluation.png", file);
+    });
+    text += "\n" + cmap::format_table(evaluated.report);
+  }
+  if (!a.common.quiet) cmap::print(text);
+  files.commit();
+}
+
+ExitCode run(const CLI::App& app, const Arguments& a, const std::string& command) {
+  const cmap::ThreadLimit limit(a.common.threads);
+  const cmap::ReconstructionOptions options = resolve_options(a);
+  if (a.print_options) {
+    cmap::print(cmap::to_json(options).dump(2) + "\n");
+    return ExitCode::kDone;
+  }
+  if (a.capture.empty() || a.output.empty()) throw cmap::UsageError("CAPTURE and --output are required");
+  const cmap::Capture capture = cmap::open_capture(a.capture);
+  std::error_code error;
+  fs::create_directories(a.output, error);
+  if (error) throw cmap::UsageError(fmt::format("{}: cannot be made: {}", a.output, error.message()));
+  cmap::require_writable(fs::path(a.output) / "report.json");
+  cmap::ProgressBar progress(!a.common.quiet);
+  cmap::ReconstructionRun how;
+  how.last = cmap::stage_from_name(a.stop_after);
+  if (app.get_option("--only-session")->count() > 0) how.only_session = static_cast<std::size_t>(a.only_session);
+  how.stages = fs::path(a.output) / "stages";
+  how.resume = a.resume;
+  how.progress = [&](std::string_view stage, double done) { progress.update(stage, done); };
+  const cmap::Reconstruction result = cmap::reconstruct(capture, options, how);
+  for (const cmap::Warning& warning : result.warnings) fmt::print(stderr, "warning: {}\n", warning.message);
+  deliver(a, result, options, command);
+  return ExitCode::kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(kDescription, "cmap_recon");
+  app.footer(kExample);
+  Arguments arguments;
+  add_options(app, arguments);
+  return cmap::run_program(app, argc, argv, [&] {
+    return run(app, arguments, cmap::shell_command({argv, argv + argc}));
+  });
+}
