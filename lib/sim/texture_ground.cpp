@@ -77,7 +77,7 @@ RgbF asphalt_texture(const Surface& s, const Eigen::Vector3f& p) {
   const auto [u, v] = uv_of(s, p);
   const float paint = road_paint(s, u, v);
   if (paint <= 0.0F) return times(s.base, tone);
-  const float worn = smooth_step(0.26F, 0.44F, fractal_noise(2.5F * x, 2.5F * y, 3, 26));
+  const float worn = smooth_step(0.34F, 0.54F, fractal_noise(2.5F * x, 2.5F * y, 3, 26));
   return mixed(times(s.base, tone), times(kPaint, varied(coarse, 0.25F) * varied(speckle, 0.06F)),
                0.92F * worn * paint);
 }

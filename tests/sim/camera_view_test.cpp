@@ -153,7 +153,7 @@ TEST(RenderView, PointsOfTheSceneHaveTheirColorInTheImage) {
     CameraModel camera = pinhole(1280, 960, 1000.0);
     camera.distortion = {-0.1, 0.02, 0.001, -0.0008};
     const CameraView view = render_view(place.scene, camera, place.pose, {.supersampling = 2});
-    const PointCloud cloud = sample_surface(place.scene, 6.0, 3);
+    const PointCloud cloud = sample_surface(place.scene, 14.0, 3);
     const Eigen::Isometry3d T_camera_world = place.pose.inverse();
     std::vector<double> errors;
     for (std::size_t i = 0; i < cloud.size(); ++i) {
