@@ -30,6 +30,7 @@ PointCloud cloud_of(const ByteSource& source, const NpyArray& points, const Arra
   PointColumns columns;
   for (std::size_t k = 0; k < 3; ++k) {
     columns.position[k] = {data + k * scalar_bytes(type), 3 * scalar_bytes(type), type};
+    if (colors.empty()) continue;
     columns.rgb[k] = {reinterpret_cast<const std::byte*>(colors.data()) + k, sizeof(Rgb8), ScalarType::kUint8};
   }
   columns.color = colors.empty() ? ColorStorage::kNone : ColorStorage::kRgb8;
