@@ -12,6 +12,9 @@
 #include "cmap/recon/reconstruction.hpp"
 #include "cmap/report/figure_module.hpp"
 #include "cmap/report/report.hpp"
+#ifdef CMAP_WITH_RENDER
+#include "cmap/render/reconstruction_figure.hpp"
+#endif
 #include "files.hpp"
 #include "program.hpp"
 
@@ -34,7 +37,7 @@ constexpr const char* kExample =
     "support a map: fewer than half of its sessions can be placed; 70 internal error.";
 
 struct Arguments {
-  std::string capture, output, preset = "default", config, stop_after = "fusion", reference;
+  std::string capture, output, preset = "default", config, stop_after = "fusion", reference, figure;
   std::vector<std::string> settings;
   std::string registration;
   int only_session = -1;
@@ -46,6 +49,7 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("CAPTURE", a.capture, "folder of a capture")->type_name("DIR");
   app.add_option("-o,--output", a.output, "folder for the results; made if need be")->type_name("DIR");
   app.add_option("--evaluate", a.reference, "reference map: also evaluation.json and evaluation.png")->type_name("REF");
+  app.add_option("--figure", a.figure, "the sessions from above after each stage: .png, .jpg, .tif")->type_name("FILE");
   app.add_option("--registration", a.registration, "prefusion (none), normal, paper or robust [robust]")
       ->type_name("NAME")
       ->check(CLI::IsMember({"prefusion", "normal", "paper", "robust"}).description(""));
@@ -65,7 +69,7 @@ void add_options(CLI::App& app, Arguments& a) {
       ->check(CLI::Range(0, 1'000'000).description(""));
   app.add_flag("--resume", a.resume, "go on from the stages that an earlier run of the same inputs left in DIR");
   cmap::add_common_options(app, a.common, "no table and no progress");
-  cmap::refuse_empty(app, {"--output", "--evaluate", "--config", "--set"});
+  cmap::refuse_empty(app, {"--output", "--evaluate", "--figure", "--config", "--set"});
 }
 
 cmap::ReconstructionOptions resolve_options(const Arguments& a) {
@@ -77,22 +81,21 @@ cmap::ReconstructionOptions resolve_options(const Arguments& a) {
   return options;
 }
 
-/// The map against a reference, which is in the capture's world: no alignment.
-struct MapEvaluation {
-  cmap::Evaluation evaluation;
-  nlohmann::ordered_json report;
-};
-
-MapEvaluation evaluate_map(const Arguments& a, const cmap::PointCloud& map, const std::string& command) {
-  cmap::PointCloudFile reference = cmap::read_point_cloud(a.reference, {.sha256 = true});
-  cmap::PointCloudFile estimate{map, {}};
-  estimate.info.path = (fs::path(a.output) / "map.ply").string();
-  estimate.info.format = "reconstruction";
-  estimate.info.points = estimate.info.finite_points = map.size();
-  const cmap::InputDescription about_reference = describe(reference), about_estimate = describe(estimate);
-  MapEvaluation result{cmap::evaluate_by_protocol(std::move(reference.cloud), std::move(estimate.cloud), {}), {}};
-  result.report = cmap::make_report(about_reference, about_estimate, result.evaluation, {.command = command});
-  return result;
+/// The map, as it was written, against a reference in the capture's world: no alignment.
+void evaluate_map(const Arguments& a, cmap::PointCloudFile reference, const std::string& command) {
+  const fs::path folder(a.output);
+  cmap::PointCloudFile map = cmap::read_point_cloud(folder / "map.ply", {.sha256 = true});
+  const cmap::InputDescription about_reference = describe(reference), about_map = describe(map);
+  const cmap::Evaluation evaluation = cmap::evaluate_by_protocol(std::move(reference.cloud), std::move(map.cloud), {});
+  cmap::RunDescription run;
+  run.command = command;
+  const nlohmann::ordered_json report = cmap::make_report(about_reference, about_map, evaluation, run);
+  cmap::OutputFiles files;
+  files.add(folder / "evaluation.json", [&](cmap::OutputFile& file) { file.write(report.dump(2) + "\n"); });
+  files.add(folder / "evaluation.png",
+            [&](cmap::OutputFile& file) { cmap::FigureModule().write(evaluation, "evaluation.png", file); });
+  if (!a.common.quiet) cmap::print("\n" + cmap::format_table(report));
+  files.commit();
 }
 
 nlohmann::ordered_json report_json(const cmap::Reconstruction& r, const cmap::ReconstructionOptions& options,
@@ -129,6 +132,23 @@ std::string table(const cmap::Reconstruction& r) {
   return text;
 }
 
+#ifdef CMAP_WITH_RENDER
+void check_figure(const Arguments& a) {
+  if (a.figure.empty()) return;
+  if (a.stop_after != "fusion") throw cmap::UsageError("--figure shows a whole run: not with --stop-after");
+  cmap::check_image_name(a.figure);
+  cmap::require_writable(a.figure);
+}
+void write_figure(const cmap::Reconstruction& r, const std::string& name, cmap::OutputFile& file) {
+  cmap::write_image(cmap::draw_reconstruction(r), name, file);
+}
+#else
+void check_figure(const Arguments& a) {
+  if (!a.figure.empty()) throw cmap::UsageError("--figure: this build has no figures (VTK was not found)");
+}
+void write_figure(const cmap::Reconstruction&, const std::string&, cmap::OutputFile&) {}
+#endif
+
 void deliver(const Arguments& a, const cmap::Reconstruction& r, const cmap::ReconstructionOptions& options,
              const std::string& command) {
   const fs::path folder(a.output);
@@ -141,16 +161,8 @@ void deliver(const Arguments& a, const cmap::Reconstruction& r, const cmap::Reco
             [&](cmap::OutputFile& file) { file.write(cmap::sessions_json(r).dump(2) + "\n"); });
   files.add(folder / "report.json",
             [&](cmap::OutputFile& file) { file.write(report_json(r, options, command).dump(2) + "\n"); });
-  std::string text = table(r);
-  if (!a.reference.empty() && a.stop_after == "fusion") {
-    const MapEvaluation evaluated = evaluate_map(a, r.map, command);
-    files.add(folder / "evaluation.json", [&](cmap::OutputFile& file) { file.write(evaluated.report.dump(2) + "\n"); });
-    files.add(folder / "evaluation.png", [&](cmap::OutputFile& file) {
-      cmap::FigureModule().write(evaluated.evaluation, "evaluation.png", file);
-    });
-    text += "\n" + cmap::format_table(evaluated.report);
-  }
-  if (!a.common.quiet) cmap::print(text);
+  files.add(a.figure, [&](cmap::OutputFile& file) { write_figure(r, a.figure, file); });
+  if (!a.common.quiet) cmap::print(table(r));
   files.commit();
 }
 
@@ -162,6 +174,12 @@ ExitCode run(const CLI::App& app, const Arguments& a, const std::string& command
     return ExitCode::kDone;
   }
   if (a.capture.empty() || a.output.empty()) throw cmap::UsageError("CAPTURE and --output are required");
+  check_figure(a);
+  if (!a.reference.empty() && a.stop_after != "fusion") {
+    throw cmap::UsageError("--evaluate needs the whole run: not with --stop-after");
+  }
+  std::optional<cmap::PointCloudFile> reference;
+  if (!a.reference.empty()) reference = cmap::read_point_cloud(a.reference, {.sha256 = true});
   const cmap::Capture capture = cmap::open_capture(a.capture);
   std::error_code error;
   fs::create_directories(a.output, error);
@@ -177,6 +195,7 @@ ExitCode run(const CLI::App& app, const Arguments& a, const std::string& command
   const cmap::Reconstruction result = cmap::reconstruct(capture, options, how);
   for (const cmap::Warning& warning : result.warnings) fmt::print(stderr, "warning: {}\n", warning.message);
   deliver(a, result, options, command);
+  if (reference) evaluate_map(a, std::move(*reference), command);
   return ExitCode::kDone;
 }
 

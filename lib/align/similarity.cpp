@@ -30,13 +30,6 @@ Similarity Similarity::operator*(const Similarity& b) const {
   return {scale * b.scale, rotation * b.rotation, *this * b.translation};
 }
 
-Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& matrix) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Vector3d signs = Eigen::Vector3d::Ones();
-  if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0) signs.z() = -1.0;
-  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
-}
-
 Similarity similarity_from(const Eigen::Matrix4d& matrix) {
   constexpr double kTolerance = 1e-3;
   const Eigen::Matrix3d linear = matrix.topLeftCorner<3, 3>();

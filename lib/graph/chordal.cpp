@@ -4,6 +4,7 @@
 #include <Eigen/SparseCholesky>
 #include <cmath>
 
+#include "cmap/core/rotation.hpp"
 #include "cmap/core/error.hpp"
 
 namespace cmap::graph {
@@ -68,14 +69,6 @@ class NodeLeastSquares {
   Eigen::Matrix<double, Eigen::Dynamic, kColumns> right_, solution_;
 };
 
-Eigen::Quaterniond nearest_rotation_of(const Eigen::Matrix3d& matrix) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Vector3d signs = Eigen::Vector3d::Ones();
-  if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0) signs.z() = -1.0;
-  return Eigen::Quaterniond(Eigen::Matrix3d(svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose()))
-      .normalized();
-}
-
 Node from_or_world(const NodeGraph& graph, const Link& link) {
   return link.from == kWorld ? Node{} : graph.nodes[link.from];
 }
@@ -104,7 +97,7 @@ void solve_rotations(NodeGraph& graph) {
   }
   system.solve("rotation");
   for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
-    if (!graph.is_fixed[i]) graph.nodes[i].rotation = nearest_rotation_of(system.of(i).transpose());
+    if (!graph.is_fixed[i]) graph.nodes[i].rotation = Eigen::Quaterniond(nearest_rotation(system.of(i).transpose())).normalized();
   }
 }
 

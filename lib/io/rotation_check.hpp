@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 
+#include "cmap/core/rotation.hpp"
+
 namespace cmap {
 
 /// Written rotations may be this far from one (largest entry of R^T R - I) without a word.
@@ -9,8 +11,5 @@ inline constexpr double kRotationTolerance = 1e-3;
 
 /// Largest entry of |R^T R - I|; infinite where det R <= 0 or an entry is not finite, as no rotation is meant then.
 double deviation_from_rotation(const Eigen::Matrix3d& matrix);
-
-/// The rotation nearest to a matrix of positive determinant (Frobenius norm): U V^T of its singular vectors.
-Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& matrix);
 
 }  // namespace cmap

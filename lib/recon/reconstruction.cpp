@@ -97,6 +97,16 @@ Trajectory trajectory_of(const std::vector<PlacedSession>& sessions, const Captu
   return trajectory;
 }
 
+/// Evenly chosen pixels, about kSketchPoints of a session.
+void add_sketch(const FramePoints& points, std::size_t frame, std::size_t n_frames, SessionSketch& sketch) {
+  constexpr std::size_t kSketchPoints = 60'000;
+  const std::size_t step = std::max<std::size_t>(1, points.positions.size() * n_frames / kSketchPoints);
+  for (std::size_t i = step / 2; i < points.positions.size(); i += step) {
+    sketch.positions.push_back(points.positions[i]);
+    sketch.frame.push_back(static_cast<std::uint32_t>(frame));
+  }
+}
+
 void fuse(const Capture& capture, const ReconstructionOptions& options, const std::vector<SessionState>& sessions,
           const ProgressSink& progress, Reconstruction& result) {
   MapFusion fusion(options.fusion_voxel_m);
@@ -106,9 +116,11 @@ void fuse(const Capture& capture, const ReconstructionOptions& options, const st
     if (progress) progress("fusion", static_cast<double>(k) / static_cast<double>(result.poses.size()));
     const PlacedSession& placed = result.poses[k++];
     const SessionPredictions session = read_session_predictions(capture.sessions[state.outcome.index]);
+    SessionSketch& sketch = result.sketches.emplace_back();
     for (std::size_t i = 0; i < session.frame_count(); ++i) {
-      fusion.add(frame_points(session, i, state.min_confidence, options.points), placed.T_world_camera[i],
-                 placed.scale);
+      const FramePoints points = frame_points(session, i, state.min_confidence, options.points);
+      fusion.add(points, placed.T_world_camera[i], placed.scale);
+      add_sketch(points, i, session.frame_count(), sketch);
     }
   }
   result.points_fused = fusion.points_added();

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 
+#include "cmap/core/rotation.hpp"
+
 namespace cmap {
 
 /// x_dst = scale rotation x_src + translation: a rigid motion where the scale is 1.
@@ -22,9 +24,6 @@ struct Similarity {
 /// The similarity that a homogeneous matrix stands for; its rotation is made orthonormal. Throws UnsupportedError where
 /// the linear part deviates by more than 1e-3 from a rotation times a positive scale.
 Similarity similarity_from(const Eigen::Matrix4d& matrix);
-
-/// The rotation nearest to a matrix in the sense of least squares (its polar factor, determinant +1).
-Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& matrix);
 
 /// Angle of a rotation in [0, pi]; exact also for tiny angles.
 double rotation_angle_rad(const Eigen::Matrix3d& rotation);

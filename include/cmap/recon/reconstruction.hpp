@@ -39,6 +39,12 @@ struct SessionOutcome {
   std::string dropped;             ///< why it is not in the map; empty: it is
 };
 
+/// Some of a session's points, for pictures: each in its frame's camera, in the session's unit.
+struct SessionSketch {
+  Array<Eigen::Vector3f> positions;
+  std::vector<std::uint32_t> frame;
+};
+
 /// What a reconstruction found, as far as it was asked to go.
 struct Reconstruction {
   std::vector<SessionOutcome> sessions;
@@ -49,6 +55,7 @@ struct Reconstruction {
   double largest_correction_m = 0.0;  ///< of a camera by the pose graph
   PointCloud map;
   std::uint64_t points_fused = 0;
+  std::vector<SessionSketch> sketches;  ///< of the sessions in the map, where it was fused
   Trajectory trajectory;  ///< world_T_imu at the frames' times
   std::vector<Warning> warnings;
   std::vector<std::pair<std::string, double>> stage_seconds;
