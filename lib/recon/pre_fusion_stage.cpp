@@ -81,6 +81,13 @@ void tell(const PreFusion& found, std::size_t k, const SessionRegistrationOption
   outcome.rotation_corrected =
       options.rotation == RotationCorrection::kJoint || registration.linearity > options.linearity_threshold;
   outcome.scale_inlier = found.voted.is_inlier[k] != 0;
+  if (registration.has_baseline && !outcome.scale_inlier) {
+    // Its path fits the trajectory with its own scale, its depths fit the neighbors' with the one that was voted.
+    state.center_factor = registration.T_world_session.scale / state.T_world_session.scale;
+    state.T_world_session.translation = registration.T_world_session.translation;
+    outcome.flags.push_back(fmt::format("scale {:.4g} of its path against {:.4g} of its neighbors",
+                                        registration.T_world_session.scale, state.T_world_session.scale));
+  }
   outcome.prefusion_rmse_m = registration.position_rmse_m;
   outcome.flags.insert(outcome.flags.end(), registration.warnings.begin(), registration.warnings.end());
   if (!registration.has_baseline) outcome.flags.push_back("no baseline: the scale is that of its neighbors");
@@ -114,6 +121,7 @@ std::vector<SessionState> pre_fuse_sessions(const Capture& capture, const Recons
   for (std::size_t k = 0; k < kept.size(); ++k) {
     SessionState& state = sessions[kept[k]];
     tell(found, k, options.prefusion.registration, state);
+    for (SessionFrame& frame : frames[k]) frame.T_camera_session.translation() *= state.center_factor;
     state.placed =
         placed_session(state.outcome.index, frames[k], state.T_world_session, state.outcome.prefusion_rmse_m);
   }

@@ -115,7 +115,7 @@ void fuse(const Capture& capture, const ReconstructionOptions& options, const st
     if (!state.is_kept()) continue;
     if (progress) progress("fusion", static_cast<double>(k) / static_cast<double>(result.poses.size()));
     const PlacedSession& placed = result.poses[k++];
-    const SessionPredictions session = read_session_predictions(capture.sessions[state.outcome.index]);
+    const SessionPredictions session = read_corrected(capture, state);
     SessionSketch& sketch = result.sketches.emplace_back();
     for (std::size_t i = 0; i < session.frame_count(); ++i) {
       const FramePoints points = frame_points(session, i, state.min_confidence, options.points);

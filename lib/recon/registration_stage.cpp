@@ -39,7 +39,7 @@ std::vector<SessionLink> register_sessions(const Capture& capture, const Reconst
   for (SessionState& state : sessions) {
     if (!state.is_kept()) continue;
     if (progress) progress("registration", static_cast<double>(n_kept) / static_cast<double>(sessions.size()));
-    SessionPredictions session = read_session_predictions(capture.sessions[state.outcome.index]);
+    SessionPredictions session = read_corrected(capture, state);
     register_one(capture, options, session, state);
     if (before) {
       std::string reason;

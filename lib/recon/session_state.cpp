@@ -50,6 +50,7 @@ Json written(const SessionState& s) {
           {"rotation", numbers(s.T_world_session.rotation)},
           {"translation", numbers(s.T_world_session.translation)},
           {"min_confidence", s.min_confidence},
+          {"center_factor", s.center_factor},
           {"placed",
            {{"scale", s.placed.scale}, {"time_s", s.placed.time_s}, {"poses", poses}, {"rmse_m", s.placed.rmse_m}}}};
 }
@@ -61,6 +62,7 @@ SessionState state_from(const Json& json) {
   s.T_world_session.rotation = matrix_from<Eigen::Matrix3d>(json.at("rotation"));
   s.T_world_session.translation = matrix_from<Eigen::Vector3d>(json.at("translation"));
   s.min_confidence = json.at("min_confidence");
+  s.center_factor = json.at("center_factor");
   const Json& placed = json.at("placed");
   s.placed.index = s.outcome.index;
   s.placed.scale = placed.at("scale");
@@ -111,6 +113,23 @@ void read_state(const Json& json, std::vector<SessionState>& sessions, std::vect
     links.push_back({l.at("from"), l.at("to"), l.at("from_frame"), l.at("to_frame"), pose_from(l.at("T_from_to")),
                      l.at("rmse_m"), l.at("n_points"), l.at("refined")});
   }
+}
+
+SessionPredictions read_corrected(const Capture& capture, const SessionState& state) {
+  SessionPredictions session = read_session_predictions(capture.sessions[state.outcome.index]);
+  if (state.center_factor == 1.0) return session;
+  for (std::size_t frame = 0; frame < session.frame_count(); ++frame) {
+    Eigen::Isometry3d& T_camera_session = session.T_camera_session[frame];
+    const Eigen::Isometry3d before = T_camera_session;
+    T_camera_session.translation() *= state.center_factor;  // so is the center, -R^T t
+    if (session.world_points.empty()) continue;
+    const Eigen::Isometry3f shift = (T_camera_session.inverse() * before).cast<float>();
+    const std::size_t first = frame * session.pixels_per_frame();
+    for (std::size_t i = 0; i < session.pixels_per_frame(); ++i) {
+      session.world_points[first + i] = shift * session.world_points[first + i];
+    }
+  }
+  return session;
 }
 
 }  // namespace cmap

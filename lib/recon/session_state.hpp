@@ -12,6 +12,9 @@ struct SessionState {
   SessionOutcome outcome;
   Similarity T_world_session;
   double min_confidence = 0.0;  ///< pixels with less are no points
+  /// What the session's camera centers are multiplied by: 1, but for outliers of scale, whose depths have the scale
+  /// that was voted for them and whose path has its own.
+  double center_factor = 1.0;
   PlacedSession placed;
 
   bool is_kept() const { return outcome.dropped.empty(); }
@@ -24,6 +27,9 @@ void read_state(const nlohmann::ordered_json& json, std::vector<SessionState>& s
 
 /// As sessions.json has it.
 nlohmann::ordered_json written(const SessionOutcome& outcome);
+
+/// A session as the stages after pre-fusion see it, its camera centers corrected.
+SessionPredictions read_corrected(const Capture& capture, const SessionState& state);
 
 /// Reads the sessions (one, or all), says what their poses and overlaps say of their scales, and places them.
 std::vector<SessionState> pre_fuse_sessions(const Capture& capture, const ReconstructionOptions& options,

@@ -61,8 +61,10 @@ ColoredPoints points_of(const Reconstruction& r, const std::vector<PlacedSession
 }
 
 std::vector<ColorClass> classes_of(const Reconstruction& r) {
+  constexpr std::size_t kMostInLegend = 6;
   std::vector<ColorClass> classes;
-  for (std::size_t k = 0; k < r.poses.size() && k < kSessionColors.size(); ++k) {
+  if (r.poses.size() > kMostInLegend) return classes;
+  for (std::size_t k = 0; k < r.poses.size(); ++k) {
     classes.push_back({fmt::format("session {}", r.poses[k].index), kSessionColors[k]});
   }
   return classes;

@@ -101,12 +101,12 @@ TEST(Covariance, RefusesWhatIsFree) {
   position_only.topLeftCorner<3, 3>().setIdentity();
   graph.priors = {{0, graph.poses[0], position_only, 0.0}};
   const std::vector<std::size_t> nodes{2};
-  EXPECT_THAT(test::unsupported([&] { node_covariances(graph, graph.poses, nodes); }),
+  EXPECT_THAT(test::refusal_of<UnsupportedError>([&] { node_covariances(graph, graph.poses, nodes); }),
               HasSubstr("leave something free"));
   // Two more positions hold the rotation as well.
   graph.priors.push_back({1, graph.poses[1], position_only, 0.0});
   graph.priors.push_back({3, graph.poses[3], position_only, 0.0});
-  EXPECT_EQ(test::unsupported([&] { node_covariances(graph, graph.poses, nodes); }), "");
+  EXPECT_EQ(test::refusal_of<UnsupportedError>([&] { node_covariances(graph, graph.poses, nodes); }), "");
   const std::vector<std::size_t> none{4};
   EXPECT_THROW(node_covariances(graph, graph.poses, none), std::invalid_argument);
 }

@@ -112,7 +112,7 @@ TEST(PreFusion, AWrongRegistrationIsOutvoted) {
 TEST(PreFusion, NamesTheSessionWithoutPoses) {
   Drive d = drive();
   for (SessionFrame& frame : d.sessions[2]) frame.time_s += 100.0;
-  EXPECT_THAT(test::unsupported([&] { pre_fuse(d.sessions, d.trajectory, mount(), d.ratios); }),
+  EXPECT_THAT(test::refusal_of<UnsupportedError>([&] { pre_fuse(d.sessions, d.trajectory, mount(), d.ratios); }),
               HasSubstr("session 2: no frame of the session has a camera pose"));
 }
 

@@ -198,7 +198,7 @@ TEST(ScaleVoting, SessionsWithoutBaselineTakeTheirNeighbors) {
     EXPECT_THAT(alone.warnings.back(), HasSubstr("session 4: no baseline, and linked to no usable session"));
   }
   for (auto& s : sessions) s.is_usable = false;
-  EXPECT_THAT(test::unsupported([&] { vote_scales(sessions, equal_units(5)); }),
+  EXPECT_THAT(test::refusal_of<UnsupportedError>([&] { vote_scales(sessions, equal_units(5)); }),
               HasSubstr("no session has a baseline"));
 }
 
@@ -286,7 +286,7 @@ TEST(ScaleVoting, RefusesWrongArguments) {
   ScaleVotingOptions options;
   options.least_tolerance = 1.0;
   EXPECT_THROW(vote_scales(sessions_of({1, 2}), equal_units(2), options), UsageError);
-  EXPECT_EQ(test::unsupported([&] { vote_scales({}, {}); }), "no session has a baseline: the scale is not determined");
+  EXPECT_EQ(test::refusal_of<UnsupportedError>([&] { vote_scales({}, {}); }), "no session has a baseline: the scale is not determined");
 }
 
 }  // namespace

@@ -247,7 +247,7 @@ TEST(SessionRegistration, FramesWithoutAPoseDoNotCount) {
   EXPECT_EQ(r.n_pairs, 20u);
   EXPECT_LT((r.T_world_session.matrix() - session.truth.matrix()).norm(), 1e-8);
   for (auto& pose : session.T_world_camera) pose.reset();
-  EXPECT_THAT(test::unsupported([&] { registered(session, RotationCorrection::kJoint); }),
+  EXPECT_THAT(test::refusal_of<UnsupportedError>([&] { registered(session, RotationCorrection::kJoint); }),
               HasSubstr("no frame of the session has a camera pose"));
   session.T_world_camera.pop_back();
   EXPECT_THROW(registered(session, RotationCorrection::kJoint), std::invalid_argument);
