@@ -124,7 +124,7 @@ void fuse(const Capture& capture, const ReconstructionOptions& options, const st
     }
   }
   result.points_fused = fusion.points_added();
-  result.map = fusion.finish();
+  result.map = fusion.finish(options.fusion_doubt);
 }
 
 void check_inputs(const Capture& capture, const ReconstructionRun& run) {
