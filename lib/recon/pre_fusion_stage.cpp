@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "cmap/core/error.hpp"
 #include "cmap/recon/overlap_scale.hpp"
 #include "recon/session_state.hpp"
+#include "recon/usable_predictions.hpp"
 
 namespace cmap {
 namespace {
@@ -49,7 +51,7 @@ ReadSession read_session(const Capture& capture, std::size_t index, const Recons
   outcome.index = index;
   outcome.name = capture.sessions[index].filename().string();
   try {
-    session.predictions = read_session_predictions(capture.sessions[index]);
+    session.predictions = read_usable_predictions(capture.sessions[index]);
     outcome.frames = session.predictions->frame_count();
     for (const Warning& warning : session.predictions->warnings) outcome.flags.push_back(warning.message);
     session.frames = frames_of(*session.predictions);
