@@ -22,9 +22,9 @@ class MapFusion {
 
   /// The map: float colors, voxels in the order in which they were first seen. A color is the mean of at most
   /// kColorsPerVoxel frames' mean colors, weighted by Cauchy's kernel about their median (width 0.1 unit RGB).
-  /// Left out are voxels whose mean confidence is below `doubt` times that of what lies around (the 75 % quantile over
-  /// voxels of the best of the cells of kDoubtCell voxels within one of its own): what was seen from far away, where
-  /// something better was seen from near. 0: all stay.
+  /// Left out are voxels whose mean confidence is below `doubt` times the mean of the best cell around (cells of
+  /// kDoubtCell voxels, its own and the 26 beside it): what was seen from far away, where something better was seen
+  /// from near. 0: all stay.
   PointCloud finish(double doubt = 0.0) const;
 
   std::size_t size() const { return voxels_.entries().size(); }
