@@ -10,7 +10,7 @@
 namespace cmap {
 namespace {
 
-/// In median depths of the session. The sky is some ten, an aerial path some ten in a session.
+/// In median depths of the session: 10 km where half of the scene is within 10 m.
 constexpr double kFarthest = 1000.0;
 
 double median_depth(const SessionPredictions& session) {
