@@ -115,8 +115,9 @@ def simulate(capture, tools):
         return
     made = capture.folder.with_name(capture.folder.name + ".json")
     asked = json.dumps({"arguments": capture.simulate, "program": sha256(tools / "cmap_simulate")})
-    if made.exists() and made.read_text() == asked:
+    if capture.folder.is_dir() and made.exists() and made.read_text() == asked:
         return
+    made.unlink(missing_ok=True)
     for folder in (capture.folder, capture.folder.with_name(capture.folder.name + ".partial")):  # the second of a run that was killed
         shutil.rmtree(folder, ignore_errors=True)
     capture.folder.parent.mkdir(parents=True, exist_ok=True)
