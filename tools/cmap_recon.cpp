@@ -184,7 +184,12 @@ ExitCode run(const CLI::App& app, const Arguments& a, const std::string& command
   std::error_code error;
   fs::create_directories(a.output, error);
   if (error) throw cmap::UsageError(fmt::format("{}: cannot be made: {}", a.output, error.message()));
-  cmap::require_writable(fs::path(a.output) / "report.json");
+  for (const char* name : {"map.ply", "trajectory.tum", "sessions.json", "report.json"}) {
+    if (fs::is_directory(fs::path(a.output) / name)) {
+      throw cmap::UsageError(fmt::format("{}: cannot be written: is a folder", (fs::path(a.output) / name).string()));
+    }
+    cmap::require_writable(fs::path(a.output) / name);
+  }
   cmap::ProgressBar progress(!a.common.quiet);
   cmap::ReconstructionRun how;
   how.last = cmap::stage_from_name(a.stop_after);

@@ -54,6 +54,7 @@ void MapFusion::add(const FramePoints& points, const Eigen::Isometry3d& T_world_
     const float weight = points.confidence[i];
     voxel.offset_sum += weight * placed[i].offset;
     voxel.weight += weight;
+    ++voxel.n;
     if (voxel.n_in_frame == std::numeric_limits<std::uint16_t>::max()) continue;
     for (std::size_t c = 0; c < 3; ++c) voxel.color_sum[c] += points.colors[i][c];
     ++voxel.n_in_frame;
@@ -98,7 +99,44 @@ RgbF MapFusion::color_of(Voxel voxel) {
   return {mean.x(), mean.y(), mean.z()};
 }
 
-PointCloud MapFusion::finish() const {
+/// By voxel, 1 for those that stay.
+Array<std::uint8_t> MapFusion::trusted(double doubt) const {
+  constexpr double kQuantile = 0.75;
+  const auto& entries = voxels_.entries();
+  const auto confidence = [&](std::size_t i) {
+    return entries[i].value.weight / static_cast<float>(entries[i].value.n);
+  };
+  const auto cell_of = [](const VoxelKey& key) {
+    const auto down = [](std::int32_t v) { return v >= 0 ? v / kDoubtCell : -((-v - 1) / kDoubtCell) - 1; };
+    return VoxelKey{down(key.x), down(key.y), down(key.z)};
+  };
+  VoxelMap<std::vector<float>> cells;
+  for (std::size_t i = 0; i < entries.size(); ++i) cells[cell_of(entries[i].key)].push_back(confidence(i));
+  VoxelMap<float> typical;
+  for (const auto& cell : cells.entries()) {
+    std::vector<float> values = cell.value;
+    const auto place = values.begin() + static_cast<std::ptrdiff_t>(kQuantile * static_cast<double>(values.size() - 1));
+    std::ranges::nth_element(values, place);
+    typical[cell.key] = *place;
+  }
+  VoxelMap<float> best;
+  for (const auto& [key, unused] : typical.entries()) {
+    float& around = best[key];
+    for (int step = 0; step < 27; ++step) {
+      const float* value = typical.find({key.x + step % 3 - 1, key.y + step / 3 % 3 - 1, key.z + step / 9 - 1});
+      if (value != nullptr) around = std::max(around, *value);
+    }
+  }
+  Array<std::uint8_t> stays(entries.size());
+  parallel_chunks(entries.size(), kPointChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      stays[i] = confidence(i) >= doubt * static_cast<double>(*best.find(cell_of(entries[i].key))) ? 1 : 0;
+    }
+  });
+  return stays;
+}
+
+PointCloud MapFusion::finish(double doubt) const {
   const auto& entries = voxels_.entries();
   PointCloud map;
   if (entries.empty()) return map;
@@ -122,7 +160,7 @@ PointCloud MapFusion::finish() const {
     }
   });
   map.colors = std::move(colors);
-  return map;
+  return doubt > 0.0 ? select(map, trusted(doubt)) : map;
 }
 
 }  // namespace cmap

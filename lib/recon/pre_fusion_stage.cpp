@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "cmap/core/error.hpp"
 #include "cmap/recon/overlap_scale.hpp"
 #include "recon/session_state.hpp"
+#include "recon/usable_predictions.hpp"
 
 namespace cmap {
 namespace {
@@ -49,7 +51,7 @@ ReadSession read_session(const Capture& capture, std::size_t index, const Recons
   outcome.index = index;
   outcome.name = capture.sessions[index].filename().string();
   try {
-    session.predictions = read_session_predictions(capture.sessions[index]);
+    session.predictions = read_usable_predictions(capture.sessions[index]);
     outcome.frames = session.predictions->frame_count();
     for (const Warning& warning : session.predictions->warnings) outcome.flags.push_back(warning.message);
     session.frames = frames_of(*session.predictions);
@@ -71,8 +73,27 @@ ReadSession read_session(const Capture& capture, std::size_t index, const Recons
   return session;
 }
 
+/// Whether ratios lead from the k-th session to an inlier of the vote, which then says its scale.
+bool reaches_inlier(const VotedScales& voted, const std::vector<std::optional<ScaleRatio>>& ratios, std::size_t k) {
+  std::size_t first = k, last = k;
+  while (first > 0 && ratios[first - 1]) --first;
+  while (last < ratios.size() && ratios[last]) ++last;
+  return std::any_of(voted.is_inlier.begin() + static_cast<std::ptrdiff_t>(first),
+                     voted.is_inlier.begin() + static_cast<std::ptrdiff_t>(last) + 1, [](char c) { return c != 0; });
+}
+
+/// Where half of the sessions are off, the vote's tolerance, a multiple of the MAD, takes all for inliers; what the
+/// neighbors then made of the scale tells.
+bool is_inlier(const PreFusion& found, std::size_t k, const ScaleVotingOptions& options) {
+  if (found.voted.is_inlier[k] == 0) return false;
+  const double change = found.voted.scales[k] / found.registrations[k].T_world_session.scale;
+  return std::abs(std::log(change)) <= std::log(options.unlinked_tolerance);
+}
+
 /// What pre-fusion found for the k-th session that is kept.
-void tell(const PreFusion& found, std::size_t k, const SessionRegistrationOptions& options, SessionState& state) {
+void tell(const PreFusion& found, std::size_t k, const std::vector<std::optional<ScaleRatio>>& ratios,
+          const PreFusionOptions& all_options, SessionState& state) {
+  const SessionRegistrationOptions& options = all_options.registration;
   const SessionRegistration& registration = found.registrations[k];
   SessionOutcome& outcome = state.outcome;
   state.T_world_session = found.T_world_session[k];
@@ -80,8 +101,12 @@ void tell(const PreFusion& found, std::size_t k, const SessionRegistrationOption
   outcome.linearity = registration.linearity;
   outcome.rotation_corrected =
       options.rotation == RotationCorrection::kJoint || registration.linearity > options.linearity_threshold;
-  outcome.scale_inlier = found.voted.is_inlier[k] != 0;
-  if (registration.has_baseline && !outcome.scale_inlier) {
+  outcome.scale_inlier = is_inlier(found, k, all_options.voting);
+  const bool has_neighbors = reaches_inlier(found.voted, ratios, k);
+  if (registration.has_baseline && !outcome.scale_inlier && !has_neighbors) {
+    outcome.flags.push_back(fmt::format("outvoted, and linked to no inlier: it keeps the scale {:.4g} of its path",
+                                        outcome.scale_prefusion));
+  } else if (registration.has_baseline && !outcome.scale_inlier) {
     // Its path fits the trajectory with its own scale, its depths fit the neighbors' with the one that was voted.
     state.center_factor = registration.T_world_session.scale / state.T_world_session.scale;
     state.T_world_session.translation = registration.T_world_session.translation;
@@ -90,7 +115,10 @@ void tell(const PreFusion& found, std::size_t k, const SessionRegistrationOption
   }
   outcome.prefusion_rmse_m = registration.position_rmse_m;
   outcome.flags.insert(outcome.flags.end(), registration.warnings.begin(), registration.warnings.end());
-  if (!registration.has_baseline) outcome.flags.push_back("no baseline: the scale is that of its neighbors");
+  if (registration.has_baseline) return;
+  outcome.flags.push_back(has_neighbors ? "no usable baseline: the scale is that of its neighbors"
+                                        : "no usable baseline and no overlap with a session that has one: the scale is "
+                                          "the median of the others', and may be far off");
 }
 
 }  // namespace
@@ -120,7 +148,7 @@ std::vector<SessionState> pre_fuse_sessions(const Capture& capture, const Recons
   const PreFusion found = pre_fuse(frames, capture.lio, mount_of(capture), ratios, options.prefusion);
   for (std::size_t k = 0; k < kept.size(); ++k) {
     SessionState& state = sessions[kept[k]];
-    tell(found, k, options.prefusion.registration, state);
+    tell(found, k, ratios, options.prefusion, state);
     for (SessionFrame& frame : frames[k]) frame.T_camera_session.translation() *= state.center_factor;
     state.placed =
         placed_session(state.outcome.index, frames[k], state.T_world_session, state.outcome.prefusion_rmse_m);

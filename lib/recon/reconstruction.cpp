@@ -6,6 +6,7 @@
 #include <array>
 #include <chrono>
 #include <map>
+#include <stdexcept>
 
 #include "cmap/core/error.hpp"
 #include "cmap/core/version.hpp"
@@ -21,17 +22,42 @@ using Json = nlohmann::ordered_json;
 /// What a later run must share to go on from this one's stages: the files by name, size and time of change, and the
 /// options.
 Json run_key(const Capture& capture, const ReconstructionOptions& options, const ReconstructionRun& run) {
+  namespace fs = std::filesystem;
   std::vector<std::string> files;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(capture.folder)) {
-    if (!entry.is_regular_file()) continue;
+  const auto add = [&](const fs::directory_entry& entry) {
+    if (!entry.is_regular_file()) return;
     files.push_back(fmt::format("{} {} {}", entry.path().lexically_relative(capture.folder).string(), entry.file_size(),
                                 entry.last_write_time().time_since_epoch().count()));
+  };
+  // Only what is read: the results may lie in the capture's folder, too.
+  for (const char* name : {"capture.json", "lidar.csv", "lio.tum"}) add(fs::directory_entry(capture.folder / name));
+  for (const StampedFile& scan : capture.scans) add(fs::directory_entry(scan.path));
+  for (const auto& entry : fs::directory_iterator(capture.folder / "predictions")) add(entry);
+  for (const fs::path& session : capture.sessions) {
+    if (!fs::is_directory(session)) continue;
+    for (const auto& entry : fs::directory_iterator(session)) add(entry);
   }
   std::ranges::sort(files);
   return {{"version", kVersion},
           {"options", to_json(options)},
           {"only_session", run.only_session ? Json(*run.only_session) : Json(nullptr)},
           {"files", files}};
+}
+
+/// False where it is not as this program wrote it: then it is found again.
+bool restored(const Json& found, std::vector<SessionState>& sessions, std::vector<SessionLink>& links) {
+  std::vector<SessionState> read_sessions;
+  std::vector<SessionLink> read_links;
+  try {
+    read_state(found, read_sessions, read_links);
+  } catch (const Json::exception&) {
+    return false;
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+  sessions = std::move(read_sessions);
+  links = std::move(read_links);
+  return true;
 }
 
 std::vector<PlacedSession> placed_of(const std::vector<SessionState>& sessions) {
@@ -124,7 +150,7 @@ void fuse(const Capture& capture, const ReconstructionOptions& options, const st
     }
   }
   result.points_fused = fusion.points_added();
-  result.map = fusion.finish();
+  result.map = fusion.finish(options.fusion_doubt);
 }
 
 void check_inputs(const Capture& capture, const ReconstructionRun& run) {
@@ -167,14 +193,10 @@ Reconstruction reconstruct(const Capture& capture, const ReconstructionOptions& 
   // Takes what an earlier run found, or finds it and keeps it.
   const auto staged = [&](const char* stage, auto&& work) {
     timed(stage, [&] {
-      if (const auto found = stages.load(stage)) {
-        sessions.clear();
-        result.links.clear();
-        read_state(*found, sessions, result.links);
-      } else {
-        work();
-        stages.save(stage, written(sessions, result.links));
-      }
+      const auto found = stages.load(stage);
+      if (found && restored(*found, sessions, result.links)) return;
+      work();
+      stages.save(stage, written(sessions, result.links));
     });
     result.poses = placed_of(sessions);
   };

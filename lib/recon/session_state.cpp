@@ -1,6 +1,7 @@
 #include "recon/session_state.hpp"
 
 #include "cmap/io/transform_file.hpp"
+#include "recon/usable_predictions.hpp"
 
 namespace cmap {
 namespace {
@@ -116,7 +117,7 @@ void read_state(const Json& json, std::vector<SessionState>& sessions, std::vect
 }
 
 SessionPredictions read_corrected(const Capture& capture, const SessionState& state) {
-  SessionPredictions session = read_session_predictions(capture.sessions[state.outcome.index]);
+  SessionPredictions session = read_usable_predictions(capture.sessions[state.outcome.index]);
   if (state.center_factor == 1.0) return session;
   for (std::size_t frame = 0; frame < session.frame_count(); ++frame) {
     Eigen::Isometry3d& T_camera_session = session.T_camera_session[frame];

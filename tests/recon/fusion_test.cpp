@@ -72,6 +72,30 @@ TEST(Fusion, GrowsWithTheMapNotWithFrames) {
   EXPECT_EQ(fusion.points_added(), 300u);
 }
 
+/// A wall seen well, and noise of a far view 30 cm before it: the doubtful points go, the same far view elsewhere
+/// stays.
+TEST(Fusion, DoubtfulPointsGoWhereBetterOnesAre) {
+  MapFusion fusion(0.05);
+  FramePoints wall, noise, far_wall;
+  const auto add = [](FramePoints& frame, const Eigen::Vector3f& p, float confidence) {
+    frame.positions.push_back(p);
+    frame.colors.push_back({50, 50, 50});
+    frame.confidence.push_back(confidence);
+    frame.pixel.push_back(static_cast<std::uint32_t>(frame.pixel.size()));
+  };
+  for (float y = 0.025f; y < 2; y += 0.05f) {
+    for (float z = 0.025f; z < 2; z += 0.05f) {
+      add(wall, {0.025f, y, z}, 12.0f);
+      if (y < 1 && z < 1) add(noise, {-0.275f, y, z}, 3.0f);
+      add(far_wall, {20.025f, y, z}, 3.0f);
+    }
+  }
+  for (const FramePoints* frame : {&wall, &noise, &far_wall}) fusion.add(*frame, kIdentity, 1.0);
+  EXPECT_EQ(fusion.finish().size(), wall.positions.size() + noise.positions.size() + far_wall.positions.size());
+  EXPECT_EQ(fusion.finish(0.5).size(), wall.positions.size() + far_wall.positions.size());
+  EXPECT_EQ(fusion.finish(0.2).size(), fusion.size()) << "3 of 12 is above a fifth";
+}
+
 TEST(Fusion, FarFromTheOriginNothingIsLost) {
   MapFusion near_map(0.2), far_map(0.2);
   const FramePoints frame = points({{0.03f, 0.05f, 0.11f}, {1.07f, 0.3f, 2.2f}}, {1, 2, 3});

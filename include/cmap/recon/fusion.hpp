@@ -22,24 +22,30 @@ class MapFusion {
 
   /// The map: float colors, voxels in the order in which they were first seen. A color is the mean of at most
   /// kColorsPerVoxel frames' mean colors, weighted by Cauchy's kernel about their median (width 0.1 unit RGB).
-  PointCloud finish() const;
+  /// Left out are voxels whose mean confidence is below `doubt` times that of what lies around (the 75 % quantile over
+  /// voxels of the best of the cells of kDoubtCell voxels within one of its own): what was seen from far away, where
+  /// something better was seen from near. 0: all stay.
+  PointCloud finish(double doubt = 0.0) const;
 
   std::size_t size() const { return voxels_.entries().size(); }
   std::uint64_t points_added() const { return n_added_; }
 
   static constexpr int kColorsPerVoxel = 8;
+  static constexpr int kDoubtCell = 10;
 
  private:
   struct Voxel {
     Eigen::Vector3f offset_sum = Eigen::Vector3f::Zero();  ///< from the voxel's corner, weighted, m
-    float weight = 0.0f;
-    std::array<Rgb8, kColorsPerVoxel> colors;  ///< of frames
-    std::uint32_t frame = 0;                   ///< that the sums below are of; 0: none
+    float weight = 0.0f;                                   ///< sum of confidences
+    std::uint32_t n = 0;                                   ///< points
+    std::array<Rgb8, kColorsPerVoxel> colors;              ///< of frames
+    std::uint32_t frame = 0;                               ///< that the sums below are of; 0: none
     std::array<float, 3> color_sum{};
     std::uint16_t n_in_frame = 0;
     std::uint16_t n_frames = 0;
   };
 
+  Array<std::uint8_t> trusted(double doubt) const;
   static void close_frame(Voxel& voxel);
   static RgbF color_of(Voxel voxel);
 

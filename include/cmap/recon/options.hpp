@@ -30,6 +30,7 @@ struct ReconstructionOptions {
   bool pose_graph = true;  ///< false: sessions stay where registration has put them
   bool lidar_priors = true;
   double fusion_voxel_m = 0.05;
+  double fusion_doubt = 0.5;  ///< voxels less sure than this share of what lies around them are left out; see MapFusion
 };
 
 /// Sets the options that a JSON object names (comments allowed). Throws UsageError naming `source` and the key:

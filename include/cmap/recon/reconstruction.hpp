@@ -56,7 +56,7 @@ struct Reconstruction {
   PointCloud map;
   std::uint64_t points_fused = 0;
   std::vector<SessionSketch> sketches;  ///< of the sessions in the map, where it was fused
-  Trajectory trajectory;  ///< world_T_imu at the frames' times
+  Trajectory trajectory;                ///< world_T_imu at the frames' times
   std::vector<Warning> warnings;
   std::vector<std::pair<std::string, double>> stage_seconds;
 };

@@ -1,0 +1,62 @@
+#include "recon/usable_predictions.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cmap/core/error.hpp"
+#include "recon/median.hpp"
+
+namespace cmap {
+namespace {
+
+/// In median depths of the session. The sky is some ten, an aerial path some ten in a session.
+constexpr double kFarthest = 1000.0;
+
+double median_depth(const SessionPredictions& session) {
+  std::vector<float> seen;
+  std::ranges::copy_if(session.depth, std::back_inserter(seen), [](float depth) { return depth > 0.0f; });
+  return median(seen);
+}
+
+void require_near_cameras(const std::string& name, const SessionPredictions& session, double farthest) {
+  for (std::size_t frame = 0; frame < session.frame_count(); ++frame) {
+    const double distance = session.T_camera_session[frame].translation().norm();
+    if (distance <= farthest) continue;
+    throw InputError(fmt::format("{}: frame {}: its camera is {:.3g} median depths away from the first", name, frame,
+                                 distance / farthest * kFarthest));
+  }
+}
+
+/// How many pixels are farther, none of them seen from now on.
+std::size_t forget_far(double farthest, SessionPredictions& session) {
+  std::size_t n_far = 0;
+  for (std::size_t i = 0; i < session.depth.size(); ++i) {
+    const bool is_far = session.depth[i] > farthest;
+    if (is_far) session.depth[i] = session.depth_confidence[i] = 0.0f;
+    bool is_far_point = false;
+    if (!session.world_points.empty() && session.world_points_confidence[i] != 0.0f) {
+      is_far_point = !(session.world_points[i].cast<double>().norm() <= 2.0 * farthest);  // cameras are away, too
+      if (is_far_point) session.world_points_confidence[i] = 0.0f;
+    }
+    if (is_far || is_far_point) ++n_far;
+  }
+  return n_far;
+}
+
+}  // namespace
+
+SessionPredictions read_usable_predictions(const std::filesystem::path& folder_or_npz) {
+  SessionPredictions session = read_session_predictions(folder_or_npz);
+  const double farthest = kFarthest * median_depth(session);
+  const std::string name = folder_or_npz.string();
+  require_near_cameras(name, session, farthest);
+  if (const std::size_t n_far = forget_far(farthest, session); n_far > 0) {
+    session.warnings.push_back(
+        {"far_pixels", fmt::format("{}: {} of {} pixels are farther than {:g} median depths; they count as not seen",
+                                   name, n_far, session.depth.size(), kFarthest)});
+  }
+  return session;
+}
+
+}  // namespace cmap

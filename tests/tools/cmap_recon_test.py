@@ -1,0 +1,436 @@
+#!/usr/bin/env python3
+"""cmap_recon as a user runs it, on good and on damaged captures; CTest sets CMAP_RECON, CMAP_SIMULATE and
+CMAP_SOURCE_DIR. The preset is a straight line, so every run is one for a path without a bend, too."""
+
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+PROGRAM = Path(os.environ["CMAP_RECON"]).resolve()
+SIMULATE = Path(os.environ["CMAP_SIMULATE"]).resolve()
+SOURCE = Path(os.environ["CMAP_SOURCE_DIR"]).resolve()
+DATA = Path(os.environ.get("CMAP_DATA_DIR", SOURCE / "../shared/data"))
+SANITIZED = "-fsanitize" in os.environ.get("CMAP_CXX_FLAGS", "")
+DONE, USAGE, INPUT, UNSUPPORTED = 0, 2, 3, 4
+
+# Six seconds of a street in four sessions (6, 6, 6 and 3 frames, two shared with the next), few pixels and beams.
+QUICK = ["route.length_m=24", "truth.map_points_per_m2=5", "camera.width_px=160", "camera.height_px=120",
+         "camera.focal_px=110", "predictions.width_px=70", "predictions.session_length=6", "lidar.azimuth_steps=300"]
+# Session scales from so few frames: VGGT's path, bent by some percent, and 3 frames at the end.
+SCALE_TOLERANCE = 0.06
+RESULTS = ("map.ply", "trajectory.tum", "sessions.json", "report.json")
+
+
+def lines_kept(path, keep):
+    """A table without the rows that `keep` refuses; comments and the header stay."""
+    rows = path.read_text().splitlines()
+    path.write_text("".join(row + "\n" for row in rows if not row[0].isdigit() or keep(row)))
+
+
+def swapped(path, row, column=0, separator=","):
+    """The times of a row and the next change places."""
+    rows = [line.split(separator) for line in path.read_text().splitlines()]
+    rows[row][column], rows[row + 1][column] = rows[row + 1][column], rows[row][column]
+    path.write_text("".join(separator.join(cells) + "\n" for cells in rows))
+
+
+class Recon(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory(prefix="cmap-recon-")
+        cls.addClassCleanup(folder.cleanup)
+        cls.simulated = Path(folder.name) / "capture"
+        settings = [argument for setting in QUICK for argument in ("--set", setting)]
+        subprocess.run([SIMULATE, "small_town", *settings, "-o", cls.simulated], check=True)
+        cls.truth = json.loads((cls.simulated / "truth" / "scales.json").read_text())["scales"]
+        assert len(cls.truth) == 4
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="cmap-recon-")
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        self.capture, self.output = self.folder / "capture", self.folder / "map"
+        shutil.copytree(self.simulated, self.capture)
+
+    def recon(self, *arguments, code=DONE, output=None, capture=None):
+        command = [PROGRAM, capture or self.capture, "-o", output or self.output, "--quiet", *arguments]
+        result = subprocess.run([str(argument) for argument in command], capture_output=True, text=True)
+        self.assertEqual(result.returncode, code, result.stderr)
+        self.assertEqual(result.stdout, "")
+        return result.stderr
+
+    def refused(self, code, *says, arguments=()):
+        """Ends with this code, a message of one line that says this, and no results."""
+        message = self.recon(*arguments, code=code)
+        for part in says:
+            self.assertIn(part, message)
+        for name in RESULTS:
+            self.assertFalse((self.output / name).is_file(), name)
+
+    def sessions(self, output=None):
+        found = json.loads(((output or self.output) / "sessions.json").read_text())["sessions"]
+        return {session["name"]: session for session in found}
+
+    def session(self, k):
+        return self.capture / "predictions" / f"session_{k:04}"
+
+    def change(self, k, name, change):
+        """An array of session k, in place, or for what `change` returns."""
+        path = self.session(k) / f"{name}.npy"
+        array = np.load(path)
+        changed = change(array)
+        np.save(path, array if changed is None else changed)
+
+    def keep_frames(self, k, frames):
+        for path in self.session(k).glob("*.npy"):
+            np.save(path, np.load(path)[frames])
+        table = self.session(k) / "frames.csv"
+        header, *rows = table.read_text().splitlines()
+        rows = [f"{i},{rows[frame].split(',', 1)[1]}" for i, frame in enumerate(frames)]
+        table.write_text("\n".join([header, *rows]) + "\n")
+        meta = self.session(k) / "meta.json"
+        meta.write_text(json.dumps({**json.loads(meta.read_text()), "frames": len(frames)}))
+
+    def remove_sessions(self, *ks):
+        for k in ks:
+            shutil.rmtree(self.session(k))
+
+    def times(self, k):
+        return [float(row.split(",")[1]) for row in (self.session(k) / "frames.csv").read_text().splitlines()[1:]]
+
+    def check_scales(self, *ks):
+        found = self.sessions()
+        for k in ks:
+            name = f"session_{k:04}"
+            self.assertIsNone(found[name]["dropped"])
+            self.assertLess(abs(np.log(found[name]["scale"] / self.truth[name])), SCALE_TOLERANCE, name)
+
+    def check_dropped(self, k, reason):
+        """Session k is left out with this reason, told on stderr; the others are as good as ever."""
+        message = self.recon()
+        name = f"session_{k:04}"
+        self.assertIn(reason, self.sessions()[name]["dropped"])
+        self.assertIn(f"warning: {name}: dropped: {self.sessions()[name]['dropped']}", message)
+        self.check_scales(*(other for other in range(4) if other != k))
+        self.assertIn(reason, (self.output / "report.json").read_text())
+
+    def check_flag(self, k, flag, message):
+        name = f"session_{k:04}"
+        self.assertTrue(any(flag in text for text in self.sessions()[name]["flags"]), self.sessions()[name]["flags"])
+        self.assertTrue(any(line.startswith(f"warning: {name}: ") and flag in line for line in message.splitlines()))
+
+    # Good captures.
+
+    def test_a_map_that_an_outside_reader_reads(self):
+        self.assertEqual(self.recon("--evaluate", self.capture / "truth" / "map.ply"), "")
+        self.check_scales(0, 1, 2, 3)
+        header, points = (self.output / "map.ply").read_bytes().split(b"end_header\n", 1)
+        n = int(header.split(b"element vertex ")[1].split()[0])
+        self.assertGreater(n, 1000)
+        self.assertEqual(len(points) % n, 0)
+        found, truth = (np.loadtxt(path) for path in (self.output / "trajectory.tum",
+                                                      self.capture / "truth" / "trajectory.tum"))
+        self.assertEqual(len(found), len({time for k in range(4) for time in self.times(k)}))
+        for axis in (1, 2, 3):
+            error = found[:, axis] - np.interp(found[:, 0], truth[:, 0], truth[:, axis])
+            self.assertLess(np.abs(error).max(), 0.5, "VGGT's drift within a session is a few percent of 10 m")
+        report = json.loads((self.output / "report.json").read_text())
+        self.assertEqual((report["map"]["points"], report["warnings"]), (n, []))
+        self.assertEqual(json.loads((self.output / "evaluation.json").read_text())["schema"], "cmap.report/1")
+
+    def test_same_bytes_again_and_for_any_number_of_threads(self):
+        runs = {name: self.folder / name for name in ("one", "two", "again")}
+        self.recon("--threads", 1, output=runs["one"])
+        self.recon("--threads", 2, output=runs["two"])
+        self.recon("--threads", 2, output=runs["again"])
+        for name in ("map.ply", "trajectory.tum", "sessions.json"):
+            self.assertEqual((runs["one"] / name).read_bytes(), (runs["two"] / name).read_bytes(), name)
+            self.assertEqual((runs["again"] / name).read_bytes(), (runs["two"] / name).read_bytes(), name)
+
+    def test_resume(self):
+        whole = self.folder / "whole"
+        self.recon(output=whole)
+        expected = (whole / "map.ply").read_bytes()
+        # In the capture's folder: what lies there of the results is no change of the inputs.
+        self.output = self.capture / "map"
+        self.recon("--stop-after", "registration")
+        self.assertFalse((self.output / "map.ply").exists())
+        stages = {path: path.read_bytes() for path in (self.output / "stages").iterdir()}
+        written = {path: path.stat().st_mtime_ns for path in stages}
+        self.recon("--resume")
+        self.assertEqual((self.output / "map.ply").read_bytes(), expected)
+        self.assertEqual({path: path.stat().st_mtime_ns for path in stages}, written, "taken, not found again")
+        for found in ("truncated", {}, {"sessions": 1}, "no number"):
+            for path, text in stages.items():
+                stage = json.loads(text)
+                if found == "no number":
+                    stage["found"]["sessions"][0]["outcome"]["rmse_m"] = None
+                else:
+                    stage["found"] = found
+                damaged = json.dumps(stage)
+                path.write_text(damaged[:100] if found == "truncated" else damaged)
+            self.recon("--resume")
+            self.assertEqual((self.output / "map.ply").read_bytes(), expected, found)
+        self.change(1, "depth", lambda depth: 1.01 * depth)
+        self.recon("--resume")
+        self.assertNotEqual((self.output / "map.ply").read_bytes(), expected, "the inputs have changed")
+
+    def test_stop_after(self):
+        for stage in ("prefusion", "registration", "posegraph"):
+            self.recon("--stop-after", stage)
+            self.check_scales(0, 1, 2, 3)
+            self.assertFalse((self.output / "map.ply").exists())
+        shutil.rmtree(self.output)
+        self.refused(USAGE, "--evaluate",
+                     arguments=("--stop-after", "prefusion", "--evaluate", self.capture / "truth" / "map.ply"))
+
+    def test_only_session(self):
+        self.recon("--only-session", 1)
+        self.assertEqual(list(self.sessions()), ["session_0001"])
+        self.check_scales(1)
+        shutil.rmtree(self.output)
+        self.refused(USAGE, "there is no session 9: the capture has 4", arguments=("--only-session", 9))
+        self.refused(USAGE, "--only-session", arguments=("--only-session", -1))
+
+    def test_registrations_and_presets(self):
+        maps = set()
+        for arguments in (("--registration", "prefusion"), ("--registration", "normal"), ("--registration", "paper"),
+                          ("--registration", "robust"), ("--preset", "paper")):
+            self.recon(*arguments)
+            # Centers of shared frames, two of them, say little of the ratio of scales; so does a session of 3.
+            self.check_scales(*((1, 2) if "--preset" in arguments else (0, 1, 2)))
+            maps.add((self.output / "map.ply").read_bytes())
+            if "prefusion" in arguments:
+                self.assertEqual({session["scale_registration"] for session in self.sessions().values()}, {1.0})
+        self.assertEqual(len(maps), 5)
+
+    def test_options(self):
+        self.refused(USAGE, 'unknown key "moon"', arguments=("--set", "moon=1"))
+        self.refused(USAGE, "voting_draws", arguments=("--set", "voting_draws=1.5"))
+        self.refused(USAGE, "fusion_voxel_m", arguments=("--set", "fusion_voxel_m=0"))
+        self.refused(USAGE, "is not name=value", arguments=("--set", "moon"))
+        self.refused(USAGE, "--registration", arguments=("--registration", "moon"))
+        self.refused(USAGE, "--preset", arguments=("--preset", "moon"))
+        self.refused(USAGE, "too small", arguments=("--set", "fusion_voxel_m=1e-9"))
+        self.refused(UNSUPPORTED, "no world_points", arguments=("--set", "points=head"))
+
+    def test_kitti(self):
+        capture = DATA / "kitti_0009"
+        if SANITIZED or not capture.is_dir():
+            self.skipTest(f"{capture} is not there, or too slow with sanitizers")
+        self.recon("--stop-after", "posegraph", capture=capture)
+        truth = json.loads((capture / "truth" / "scales.json").read_text())["scales"]
+        found = self.sessions()
+        self.assertEqual(sorted(found), sorted(truth))
+        for name, scale in truth.items():
+            self.assertLess(abs(found[name]["scale"] / scale - 1.0), 0.02, name)
+
+    # Inputs that are missing.
+
+    def test_stages_without_inputs(self):
+        for missing, message in (("predictions", "predictions: no sessions"), ("lio.tum", "lio.tum: missing"),
+                                 ("lidar.csv", "lidar.csv: no such file"), ("lidar/000030.pcd", "lidar.csv: line 32"),
+                                 ("capture.json", "capture.json: no such file")):
+            path, aside = self.capture / missing, self.folder / "aside"
+            path.rename(aside)
+            self.refused(INPUT, message)
+            aside.rename(path)
+        lines_kept(self.capture / "lidar.csv", lambda row: False)
+        self.refused(INPUT, "lidar.csv", "lists no file")
+
+    def test_damaged_scan(self):
+        scan = self.capture / "lidar" / "000030.pcd"
+        scan.write_bytes(scan.read_bytes()[:300])
+        self.refused(INPUT, "000030.pcd: truncated")
+
+    def test_most_sessions_broken(self):
+        for k in range(2):
+            (self.session(k) / "depth.npy").unlink()
+        message = self.recon()  # half is enough
+        self.assertEqual(message.count("dropped"), 2)
+        self.check_scales(2, 3)
+        shutil.rmtree(self.output)
+        (self.session(2) / "depth.npy").unlink()
+        self.refused(UNSUPPORTED, "3 of 4 sessions had to be dropped", "session_0000/depth.npy: no such file")
+
+    def test_a_broken_session_is_dropped(self):
+        depth = self.session(1) / "depth.npy"
+        depth.write_bytes(depth.read_bytes()[:1000])
+        self.check_dropped(1, "session_0001/depth.npy: truncated")
+
+    # Sessions that do not say their scale.
+
+    def test_few_sessions(self):
+        self.remove_sessions(2, 3)
+        self.recon()
+        self.check_scales(0, 1)
+        self.remove_sessions(1)
+        self.recon()
+        self.check_scales(0)
+
+    def test_a_session_of_one_frame(self):
+        self.keep_frames(1, [0])
+        message = self.recon()
+        self.check_flag(1, "no baseline", message)
+        self.check_flag(2, "not linked to session_0001: no frame is shared", message)
+        self.check_scales(0, 1, 2)  # 1 by the frame that it shares with 0
+
+    def test_sessions_of_one_frame(self):
+        for k in range(4):
+            self.keep_frames(k, [0])
+        self.refused(UNSUPPORTED, "no session has a baseline")
+
+    def test_hovering(self):
+        trajectory = self.capture / "lio.tum"
+        header, first, *rest = trajectory.read_text().splitlines()
+        pose = first.split(" ", 1)[1]
+        trajectory.write_text("\n".join([header, first] + [f"{row.split()[0]} {pose}" for row in rest]) + "\n")
+        self.refused(UNSUPPORTED, "no session has a baseline")
+
+    def test_a_session_that_believes_to_hover(self):
+        self.change(1, "extrinsic", lambda poses: np.repeat(poses[:1], len(poses), 0))
+        message = self.recon()
+        self.check_flag(1, "the scale is that of its neighbors", message)
+        self.check_scales(0, 1, 2)
+
+    def test_all_scales_outliers_but_two(self):
+        for k, factor in ((1, 3.0), (2, 0.3)):
+            self.change(k, "extrinsic", lambda poses: poses * np.array([1, 1, 1, factor]))
+        message = self.recon()
+        self.check_scales(0, 1, 2, 3)
+        for k in (1, 2):
+            self.check_flag(k, "of its path against", message)
+            self.assertFalse(self.sessions()[f"session_{k:04}"]["scale_inlier"])
+            # An undamaged session has 0.9; with the path left three times as long it was 0.57.
+            self.assertGreater(self.sessions()[f"session_{k:04}"]["overlap"], 0.8)
+
+    def test_no_frames_shared(self):
+        self.keep_frames(1, [2, 3])
+        self.keep_frames(3, [2])
+        message = self.recon()
+        self.check_scales(0, 1, 2)
+        self.check_flag(1, "not linked to session_0000: no frame is shared", message)
+        self.check_flag(1, "keeps the scale", message)
+        self.check_flag(3, "the scale is the median of the others'", message)
+
+    def test_lidar_misses_a_session(self):
+        self.remove_sessions(2, 3)
+        first, last = self.times(1)[0] - 1.5, self.times(1)[-1] + 1.5
+        lines_kept(self.capture / "lidar.csv", lambda row: not first < float(row.split(",")[0]) < last)
+        message = self.recon()
+        self.check_flag(1, "the LiDAR has no points at the session's time", message)
+        self.assertEqual(self.sessions()["session_0001"]["scale_registration"], 1.0)
+        self.check_scales(0, 1)
+
+    # Numbers that are none.
+
+    def test_depths_that_are_none(self):
+        for value in (0.0, np.nan, np.inf):
+            self.change(1, "depth", lambda depth: depth[:, :10].fill(value))
+            message = self.recon()
+            self.check_flag(1, "4200 of 23520 pixels", message)
+            self.check_scales(0, 1, 2, 3)
+            self.assertNotIn(b"nan", (self.output / "sessions.json").read_bytes())
+
+    def test_depths_all_none(self):
+        self.change(1, "depth", lambda depth: depth.fill(np.nan))
+        self.check_dropped(1, "session_0001/depth.npy: no pixel has a finite positive depth")
+
+    def test_a_negative_depth(self):
+        self.change(1, "depth", lambda depth: depth[2, 3].fill(-1.0))
+        self.check_dropped(1, "session_0001/depth.npy: -1 at frame 2, row 3, column 0")
+
+    def test_an_endless_depth(self):
+        self.change(1, "depth", lambda depth: depth[2, 3, :5].fill(1e30))
+        message = self.recon()
+        self.check_flag(1, "5 of 23520 pixels are farther than 1000 median depths", message)
+        self.check_scales(0, 1, 2, 3)
+
+    def test_a_camera_out_of_this_world(self):
+        self.change(1, "extrinsic", lambda poses: poses[3, 0, 3:].fill(1e300))
+        self.check_dropped(1, "frame 3: its camera is inf median depths away")
+
+    def test_extrinsics_that_are_no_rotation(self):
+        self.change(1, "extrinsic", lambda poses: poses * np.array([1, 1, 1.1, 1]))
+        self.check_dropped(1, "session_0001/extrinsic.npy: frame 0: no rotation")
+        calibration = self.capture / "capture.json"
+        double = [[2, 0, 0, 0], [0, 2, 0, 0], [0, 0, 2, 0], [0, 0, 0, 1]]
+        calibration.write_text(json.dumps({**json.loads(calibration.read_text()), "T_lidar_camera": double}))
+        shutil.rmtree(self.output)
+        self.refused(INPUT, "capture.json: T_lidar_camera: no rotation")
+
+    def test_no_confidence(self):
+        self.change(1, "depth_conf", lambda confidence: confidence.fill(1.0))
+        self.check_dropped(1, "no pixel has a confidence of 1.5 or more")
+
+    def test_images_of_another_size(self):
+        self.change(1, "images", lambda images: images[:, :-14])
+        self.check_dropped(1, "session_0001/images.npy: has the shape (6, 42, 70, 3)")
+
+    def test_a_session_of_another_size(self):
+        for name in ("depth", "depth_conf", "images"):
+            self.change(1, name, lambda array: array[:, ::2, ::2].copy())
+        self.change(1, "intrinsic", lambda cameras: cameras * np.array([[0.5], [0.5], [1]]))
+        meta = self.session(1) / "meta.json"
+        meta.write_text(json.dumps({**json.loads(meta.read_text()), "width": 35, "height": 28}))
+        message = self.recon()
+        self.check_flag(1, "not linked to session_0000: the pictures have other sizes", message)
+        self.check_scales(0, 1, 2)
+
+    # Times.
+
+    def test_times_out_of_order(self):
+        for table, separator in (("lio.tum", " "), ("lidar.csv", ","), ("images.csv", ",")):
+            path = self.capture / table
+            good = path.read_text()
+            swapped(path, 5, separator=separator)
+            self.refused(INPUT, f"{table}: line 7: ", "is not after")
+            path.write_text(good)
+        swapped(self.session(1) / "frames.csv", 2, column=1)
+        self.check_dropped(1, "session_0001/frames.csv: line 4: ")
+
+    def test_gaps_in_the_poses(self):
+        first, last = self.times(1)[2] - 0.2, self.times(1)[3] + 0.2
+        lines_kept(self.capture / "lio.tum", lambda row: not first < float(row.split()[0]) < last)
+        message = self.recon()
+        self.check_flag(1, "2 of 6 frames have no LiDAR-inertial pose", message)
+        self.check_scales(0, 1, 2, 3)
+
+    def test_poses_of_another_time(self):
+        table = self.session(1) / "frames.csv"
+        rows = [row.split(",") for row in table.read_text().splitlines()]
+        for row in rows[1:]:
+            row[1] = str(float(row[1]) + 1e6)
+        table.write_text("".join(",".join(row) + "\n" for row in rows))
+        self.check_dropped(1, "no frame has a LiDAR-inertial pose at its time")
+        shutil.rmtree(self.output)
+        lines_kept(self.capture / "lio.tum", lambda row: float(row.split()[0]) < 0.15)
+        self.refused(UNSUPPORTED, "4 of 4 sessions had to be dropped", "no frame has a LiDAR-inertial pose")
+
+    # Outputs.
+
+    def test_outputs_that_cannot_be_written(self):
+        self.assertIn("/proc/nowhere", self.recon(output="/proc/nowhere", code=USAGE))
+        self.output.write_text("mine")
+        self.assertIn(f"{self.output}: cannot be made", self.recon(code=USAGE))
+        self.assertEqual(self.output.read_text(), "mine")
+        self.output.unlink()
+        for name in ("map.ply", "trajectory.tum", "sessions.json"):
+            taken = self.output / name / "mine"
+            taken.mkdir(parents=True)
+            self.refused(USAGE, f"{name}: cannot be written")
+            self.assertEqual(list(self.output.iterdir()), [self.output / name], "refused before the work begins")
+            shutil.rmtree(self.output)
+        self.output.mkdir()
+        (self.output / "stages").write_text("mine")
+        self.refused(USAGE, "stages: cannot be made")
+
+
+if __name__ == "__main__":
+    unittest.main()
