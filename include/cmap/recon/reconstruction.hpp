@@ -73,7 +73,7 @@ struct ReconstructionRun {
 /// registration, pose graph, fusion (PIPELINE). One session is in memory at a time, two for their links; the fused map
 /// bounds the rest. The same bytes for any number of threads.
 /// A session that cannot be read or placed is dropped, with the reason in its outcome and a warning. Throws InputError
-/// where the capture has no sessions or no LiDAR-inertial poses, UnsupportedError where fewer than half of the frames
+/// where the capture has no sessions or no LiDAR-inertial poses, UnsupportedError where fewer than half of the sessions
 /// are left.
 Reconstruction reconstruct(const Capture& capture, const ReconstructionOptions& options,
                            const ReconstructionRun& run = {});
