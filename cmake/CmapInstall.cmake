@@ -1,4 +1,5 @@
-# The installed package: find_package(cmap) gives cmap::core, io, spatial, metrics, align, eval and report.
+# The installed package: find_package(cmap) gives cmap::core, io, spatial, metrics, align, eval and report,
+# and, where Ceres was found, graph and recon.
 include(CMakePackageConfigHelpers)
 
 set(CMAP_INSTALL_CMAKEDIR ${CMAKE_INSTALL_LIBDIR}/cmake/cmap)

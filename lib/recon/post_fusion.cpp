@@ -43,19 +43,6 @@ LidarRegistration kept(const Similarity& T_world_session, std::string why) {
   return result;
 }
 
-}  // namespace
-
-Registration registration_from_name(std::string_view name) {
-  for (std::size_t i = 0; i < kNames.size(); ++i) {
-    if (kNames[i] == name) return static_cast<Registration>(i);
-  }
-  throw UsageError(fmt::format("registration \"{}\" is none of prefusion, normal, paper, robust", name));
-}
-
-std::string_view registration_name(Registration registration) { return kNames[static_cast<std::size_t>(registration)]; }
-
-namespace {
-
 /// Without a measure of the fit.
 LidarRegistration moved_session(const SessionCloud& session, const PointCloud& lidar, const Similarity& T_world_session,
                                 Registration registration, double voxel_m, double sigma_m) {
@@ -76,21 +63,40 @@ LidarRegistration moved_session(const SessionCloud& session, const PointCloud& l
   }
 }
 
+/// Mean of the squared distances, those beyond the three voxels of a match counted as three.
+double truncated_cost_m2(const LidarRegistration& result, double voxel_m) {
+  return result.overlap * result.rmse_m * result.rmse_m + (1.0 - result.overlap) * 9.0 * voxel_m * voxel_m;
+}
+
 }  // namespace
+
+Registration registration_from_name(std::string_view name) {
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    if (kNames[i] == name) return static_cast<Registration>(i);
+  }
+  throw UsageError(fmt::format("registration \"{}\" is none of prefusion, normal, paper, robust", name));
+}
+
+std::string_view registration_name(Registration registration) { return kNames[static_cast<std::size_t>(registration)]; }
 
 LidarRegistration register_on_lidar(const SessionCloud& session, const PointCloud& lidar,
                                     const Similarity& T_world_session, Registration registration, double voxel_m,
                                     double sigma_m) {
   if (session.cloud.positions.empty()) return kept(T_world_session, "the session has no points");
   if (lidar.positions.empty()) return kept(T_world_session, "the LiDAR has no points at the session's time");
-  LidarRegistration result;
-  result.T_world_session = T_world_session;
-  if (registration != Registration::kPrefusion) {
-    result = moved_session(session, lidar, T_world_session, registration, voxel_m, sigma_m);
-  }
+  const Bvh target(sort_points(lidar));
+  LidarRegistration before;
+  before.T_world_session = T_world_session;
+  measure_fit(session.cloud, target, voxel_m, before);
+  if (registration == Registration::kPrefusion) return before;
+  LidarRegistration result = moved_session(session, lidar, T_world_session, registration, voxel_m, sigma_m);
   const Similarity step = result.T_world_session * T_world_session.inverse();
-  measure_fit(transformed(session.cloud, step.matrix()), Bvh(sort_points(lidar)), voxel_m, result);
-  return result;
+  measure_fit(transformed(session.cloud, step.matrix()), target, voxel_m, result);
+  const bool is_better = truncated_cost_m2(result, voxel_m) < truncated_cost_m2(before, voxel_m);
+  if (registration != Registration::kRobust || !result.accepted || is_better) return result;
+  before.accepted = false;
+  before.flags.push_back("registration fits no better than pre-fusion, which is kept");
+  return before;
 }
 
 }  // namespace cmap

@@ -35,7 +35,9 @@ struct LidarRegistration {
 };
 
 /// Moves a session onto the LiDAR's points from where pre-fusion has put it (regularized cross-modal Sim(3), expected
-/// scale change 1). Nothing throws for lack of overlap: the session stays and is flagged.
+/// scale change 1). Nothing throws for lack of overlap: the session stays and is flagged. So does, with kRobust, a
+/// session that fits no better afterwards (mean squared distance, those beyond three voxels counted as three): voxels
+/// too coarse for the scene slide along it.
 /// @param session  in the world, by pre-fusion, with confidences
 /// @param sigma_m  RMSE of its camera centers in pre-fusion
 LidarRegistration register_on_lidar(const SessionCloud& session, const PointCloud& lidar,
