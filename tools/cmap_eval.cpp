@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "cmap/align/trajectory.hpp"
 #include "cmap/core/parallel.hpp"
 #include "cmap/core/simd.hpp"
 #include "cmap/eval/point_errors.hpp"
@@ -73,9 +74,11 @@ void add_options(CLI::App& app, Arguments& a) {
       ->type_name("FILE");
   app.add_option("--est-trajectory", a.estimate_trajectory, "TUM file of the estimate's poses, at the same times")
       ->type_name("FILE");
-  app.add_option("--observed-from", a.sensor,
-                 "where the estimate's sensor was: TUM file in the estimate's frame; means --observed sensor")
-      ->type_name("FILE");
+  app.add_option(
+         "--observed-from", a.sensor,
+         "where the estimate's sensor was: TUM file, or a capture with its scans and lio.tum, in the estimate's "
+         "frame; means --observed sensor")
+      ->type_name("FILE|DIR");
   app.add_option("--require", a.requirements, "exit 1 unless it holds: LCR>=0.2, accuracy@0.1<=0.06; repeatable")
       ->type_name("EXPR")
       ->expected(1)
@@ -104,6 +107,14 @@ cmap::EvaluationOptions resolve_options(const Arguments& arguments) {
   return options;
 }
 
+/// The poses of a TUM file, or where the scanner of a capture was.
+std::vector<Eigen::Vector3d> sensor_positions(const std::string& path) {
+  if (std::filesystem::is_directory(path)) return cmap::scanner_positions(cmap::open_capture(path));
+  std::vector<Eigen::Vector3d> positions;
+  for (const cmap::StampedPose& pose : cmap::read_tum_trajectory(path)) positions.push_back(pose.position);
+  return positions;
+}
+
 /// Files that only another option would read are mistakes.
 cmap::ProtocolInputs protocol_inputs(const Arguments& a, const cmap::EvaluationOptions& options) {
   const bool by_trajectories = options.align == "trajectory";
@@ -120,11 +131,7 @@ cmap::ProtocolInputs protocol_inputs(const Arguments& a, const cmap::EvaluationO
     inputs.reference_trajectory = cmap::read_tum_trajectory(a.reference_trajectory);
     inputs.estimate_trajectory = cmap::read_tum_trajectory(a.estimate_trajectory);
   }
-  if (!a.sensor.empty()) {
-    for (const cmap::StampedPose& pose : cmap::read_tum_trajectory(a.sensor)) {
-      inputs.sensor_positions.push_back(pose.position);
-    }
-  }
+  if (!a.sensor.empty()) inputs.sensor_positions = sensor_positions(a.sensor);
   return inputs;
 }
 

@@ -63,6 +63,19 @@ std::optional<StampedPose> pose_at(const Trajectory& trajectory, double time_s, 
                      before.rotation.slerp(share, after->rotation)};
 }
 
+std::vector<Eigen::Vector3d> scanner_positions(const Capture& capture, double max_gap_s) {
+  std::vector<Eigen::Vector3d> positions;
+  for (const StampedFile& scan : capture.scans) {
+    const auto pose = pose_at(capture.lio, scan.time_s, max_gap_s);
+    if (pose) positions.push_back(pose->position + pose->rotation * capture.calibration.T_imu_lidar.translation());
+  }
+  if (positions.empty()) {
+    throw InputError(
+        fmt::format("{}: no scan has a LiDAR-inertial pose (lio.tum) at its time", capture.folder.string()));
+  }
+  return positions;
+}
+
 std::vector<PosePair> pair_in_time(const Trajectory& source, const Trajectory& target, double max_gap_s) {
   std::vector<PosePair> pairs;
   for (const StampedPose& pose : source) {

@@ -88,6 +88,34 @@ class Results(CmapEval):
         for heading in ("when the estimate is off by 0.01 m", "95 % intervals, 50 replicates of", "could not have seen"):
             self.assertIn(heading, table)
 
+    def test_what_the_sensor_saw(self):
+        """The same path as a TUM file and as a capture's scans; from far away nothing is seen."""
+        town = (TOWN / "reference.ply", TOWN / "estimate.ply", "--metrics", "chamfer")
+        center = np.mean(np.array(self.evaluate(*town)["inputs"]["reference"]["bounds_m"]["min"]))
+        rows = "".join(f"{0.1 * i:.1f} {center + i} {center + i} 5 0 0 0 1\n" for i in range(20))
+        from_path = self.evaluate(*town, "--observed-from", self.input("path.tum", rows))
+        self.assertEqual((from_path["unobserved"]["method"], from_path["parameters"]["observed"]), ("sensor", "sensor"))
+        share = from_path["unobserved"]["reference"]["share_unobserved"]
+        self.assertTrue(0 < share < 1, share)
+        capture = self.folder / "capture"
+        (capture / "lidar").mkdir(parents=True)
+        identity = [[float(i == j) for j in range(4)] for i in range(4)]
+        camera = {"model": "pinhole", "width": 4, "height": 4, "K": [4, 4, 2, 2], "distortion": []}
+        (capture / "capture.json").write_text(json.dumps(
+            {"version": 1, "camera": camera, "T_imu_lidar": identity, "T_lidar_camera": identity}))
+        (capture / "image.png").write_text("not opened")
+        (capture / "images.csv").write_text("timestamp_s,file\n0.0,image.png\n")
+        (capture / "lidar.csv").write_text("timestamp_s,file\n" + "".join(f"{0.1 * i:.1f},lidar/0.pcd\n" for i in range(20)))
+        (capture / "lidar" / "0.pcd").write_text(
+            "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA ascii\n1 2 3\n")
+        (capture / "lio.tum").write_text(rows)
+        from_scans = self.evaluate(*town, "--observed-from", capture)
+        self.assertEqual(from_scans["unobserved"], from_path["unobserved"])
+        far = self.evaluate(*town, "--observed-from", self.input("far.tum", "0 5000 0 5 0 0 0 1\n"))
+        self.assertEqual(far["unobserved"]["reference"]["share_unobserved"], 1)
+        for status, arguments in ((2, ("--observed", "sensor")), (3, ("--observed-from", "none.tum"))):
+            self.assertEqual(self.run_program(*town, *arguments).returncode, status)
+
     def test_golden_values(self):
         for folder in (TOWN, MICRO / "two_points"):
             with self.subTest(folder.name):

@@ -9,6 +9,7 @@
 #include "cmap/align/alignment.hpp"
 #include "cmap/align/similarity.hpp"
 #include "cmap/align/umeyama.hpp"
+#include "cmap/io/capture.hpp"
 #include "cmap/io/trajectory_file.hpp"
 
 namespace cmap {
@@ -16,6 +17,9 @@ namespace cmap {
 /// The pose at a time: positions linear, rotations along the shortest arc. None outside the trajectory, or where the
 /// two poses around the time are more than max_gap_s apart (a pose at that very time always counts). Thread-safe.
 std::optional<StampedPose> pose_at(const Trajectory& trajectory, double time_s, double max_gap_s = 0.15);
+
+/// Where the scanner of a capture was at the time of each scan that has a pose. Throws InputError where none has.
+std::vector<Eigen::Vector3d> scanner_positions(const Capture& capture, double max_gap_s = 0.15);
 
 /// Poses of two trajectories at the same times: the source's own, and the target interpolated there.
 struct PosePair {
