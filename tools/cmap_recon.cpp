@@ -1,15 +1,12 @@
 // cmap_recon CAPTURE -o DIR: sessions of VGGT predictions and LiDAR become one metric colored map.
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <chrono>
 #include <nlohmann/json.hpp>
 
-#include "cmap/core/version.hpp"
 #include "cmap/eval/protocol.hpp"
 #include "cmap/io/point_cloud_file.hpp"
-#include "cmap/recon/reconstruction.hpp"
+#include "cmap/recon/reconstruction_report.hpp"
 #include "cmap/report/figure_module.hpp"
 #include "cmap/report/report.hpp"
 #ifdef CMAP_WITH_RENDER
@@ -98,40 +95,6 @@ void evaluate_map(const Arguments& a, cmap::PointCloudFile reference, const std:
   files.commit();
 }
 
-nlohmann::ordered_json report_json(const cmap::Reconstruction& r, const cmap::ReconstructionOptions& options,
-                                   const std::string& command) {
-  nlohmann::ordered_json warnings = nlohmann::ordered_json::array(), stages = nlohmann::ordered_json::object();
-  for (const cmap::Warning& w : r.warnings) warnings.push_back({{"id", w.id}, {"message", w.message}});
-  for (const auto& [stage, seconds] : r.stage_seconds) stages[stage] = seconds;
-  return {{"schema", "cmap.reconstruction/1"},
-          {"tool", {{"name", "cmap"}, {"version", cmap::kVersion}}},
-          {"options", cmap::to_json(options)},
-          {"sessions", cmap::sessions_json(r).at("sessions")},
-          {"pose_graph",
-           {{"links", r.links.size()},
-            {"cost_before", r.graph_cost_before},
-            {"cost_after", r.graph_cost_after},
-            {"iterations", r.graph_iterations},
-            {"largest_correction_m", r.largest_correction_m}}},
-          {"map", {{"points", r.map.size()}, {"points_fused", r.points_fused}}},
-          {"warnings", warnings},
-          {"run", {{"command", command}, {"stages", stages}}}};
-}
-
-std::string table(const cmap::Reconstruction& r) {
-  std::string text = "session        frames  scale s1      s2  linearity  inlier  overlap   RMSE m\n";
-  for (const cmap::SessionOutcome& s : r.sessions) {
-    text += fmt::format("{:<14} {:>6}", s.name, s.frames);
-    text += s.dropped.empty()
-                ? fmt::format("  {:>8.4g}  {:>6.4f}  {:>9.4f}  {:>6}  {:>7.3f}  {:>7.3f}\n", s.scale_prefusion,
-                              s.scale_registration, s.linearity, s.scale_inlier ? "yes" : "no", s.overlap, s.rmse_m)
-                : "  dropped: " + s.dropped + "\n";
-  }
-  if (r.map.size() > 0) text += fmt::format("map: {} points of {} pixels\n", r.map.size(), r.points_fused);
-  for (const auto& [stage, seconds] : r.stage_seconds) text += fmt::format("{}: {:.1f} s\n", stage, seconds);
-  return text;
-}
-
 #ifdef CMAP_WITH_RENDER
 void check_figure(const Arguments& a) {
   if (a.figure.empty()) return;
@@ -160,9 +123,9 @@ void deliver(const Arguments& a, const cmap::Reconstruction& r, const cmap::Reco
   files.add(folder / "sessions.json",
             [&](cmap::OutputFile& file) { file.write(cmap::sessions_json(r).dump(2) + "\n"); });
   files.add(folder / "report.json",
-            [&](cmap::OutputFile& file) { file.write(report_json(r, options, command).dump(2) + "\n"); });
+            [&](cmap::OutputFile& file) { file.write(cmap::reconstruction_json(r, options, command).dump(2) + "\n"); });
   files.add(a.figure, [&](cmap::OutputFile& file) { write_figure(r, a.figure, file); });
-  if (!a.common.quiet) cmap::print(table(r));
+  if (!a.common.quiet) cmap::print(cmap::reconstruction_table(r));
   files.commit();
 }
 
@@ -185,9 +148,6 @@ ExitCode run(const CLI::App& app, const Arguments& a, const std::string& command
   fs::create_directories(a.output, error);
   if (error) throw cmap::UsageError(fmt::format("{}: cannot be made: {}", a.output, error.message()));
   for (const char* name : {"map.ply", "trajectory.tum", "sessions.json", "report.json"}) {
-    if (fs::is_directory(fs::path(a.output) / name)) {
-      throw cmap::UsageError(fmt::format("{}: cannot be written: is a folder", (fs::path(a.output) / name).string()));
-    }
     cmap::require_writable(fs::path(a.output) / name);
   }
   cmap::ProgressBar progress(!a.common.quiet);

@@ -220,4 +220,21 @@ class FieldWriter {
 template <class Fields, class Options>
 using FieldsOf = std::conditional_t<Fields::kChanges, Options, const Options>;
 
+/// An option as a command line sets it.
+struct OptionAssignment {
+  std::string name;
+  nlohmann::ordered_json value;  ///< a text where it is no JSON
+};
+
+/// Throws UsageError unless it has the form "name=value", which the message calls `form`.
+inline OptionAssignment read_assignment(const std::string& assignment, const char* form) {
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    throw UsageError(fmt::format("\"{}\" is not {}", assignment, form));
+  }
+  const std::string text = assignment.substr(equals + 1);
+  auto value = nlohmann::ordered_json::parse(text, nullptr, /*allow_exceptions=*/false);
+  return {assignment.substr(0, equals), value.is_discarded() ? nlohmann::ordered_json(text) : std::move(value)};
+}
+
 }  // namespace cmap

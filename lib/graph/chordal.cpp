@@ -4,8 +4,8 @@
 #include <Eigen/SparseCholesky>
 #include <cmath>
 
-#include "cmap/core/rotation.hpp"
 #include "cmap/core/error.hpp"
+#include "cmap/core/rotation.hpp"
 
 namespace cmap::graph {
 namespace {
@@ -97,7 +97,8 @@ void solve_rotations(NodeGraph& graph) {
   }
   system.solve("rotation");
   for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
-    if (!graph.is_fixed[i]) graph.nodes[i].rotation = Eigen::Quaterniond(nearest_rotation(system.of(i).transpose())).normalized();
+    if (!graph.is_fixed[i])
+      graph.nodes[i].rotation = Eigen::Quaterniond(nearest_rotation(system.of(i).transpose())).normalized();
   }
 }
 

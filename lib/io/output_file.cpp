@@ -107,6 +107,7 @@ void OutputFiles::commit() {
 }
 
 void require_writable(const fs::path& path) {
+  if (fs::is_directory(path)) fail(path, EISDIR);
   if (!path.empty() && !is_written_directly(path)) const OutputFile created_and_removed(path);
 }
 

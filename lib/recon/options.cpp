@@ -67,13 +67,8 @@ void apply_reconstruction_config_file(ReconstructionOptions& options, const std:
 }
 
 void set_reconstruction_option(ReconstructionOptions& options, const std::string& assignment) {
-  const std::size_t equals = assignment.find('=');
-  if (equals == std::string::npos || equals == 0) {
-    throw UsageError(fmt::format("\"{}\" is not name=value", assignment));
-  }
-  const std::string text = assignment.substr(equals + 1);
-  Json value = Json::parse(text, nullptr, /*allow_exceptions=*/false);
-  apply(options, {{assignment.substr(0, equals), value.is_discarded() ? Json(text) : value}});
+  const auto [name, value] = read_assignment(assignment, "name=value");
+  apply(options, {{name, value}});
 }
 
 void apply_reconstruction_preset(ReconstructionOptions& options, const std::string& name) {

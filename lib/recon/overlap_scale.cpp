@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kFewestPixels = 100;
 
-float median_of(std::span<const float> values) {
+float median_of_finite(std::span<const float> values) {
   std::vector<float> finite;
   for (const float v : values) {
     if (std::isfinite(v)) finite.push_back(v);
@@ -27,7 +27,8 @@ void append_log_ratios(const SharedFrame& frame, std::vector<double>& log_ratios
   if (frame.confidence_before.size() != n || frame.depth_after.size() != n || frame.confidence_after.size() != n) {
     throw std::invalid_argument("scale_ratio_of_depths: the two sessions must have equally many pixels");
   }
-  const float least_before = median_of(frame.confidence_before), least_after = median_of(frame.confidence_after);
+  const float least_before = median_of_finite(frame.confidence_before);
+  const float least_after = median_of_finite(frame.confidence_after);
   for (std::size_t i = 0; i < n; ++i) {
     if (!(frame.confidence_before[i] >= least_before && frame.confidence_after[i] >= least_after)) continue;
     if (!is_depth(frame.depth_before[i]) || !is_depth(frame.depth_after[i])) continue;

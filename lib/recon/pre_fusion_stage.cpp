@@ -6,6 +6,7 @@
 #include "cmap/core/error.hpp"
 #include "cmap/recon/overlap_scale.hpp"
 #include "recon/session_state.hpp"
+#include "recon/shared_frames.hpp"
 #include "recon/usable_predictions.hpp"
 
 namespace cmap {
@@ -19,21 +20,24 @@ std::span<const float> plane(const Array<float>& values, std::size_t frame, std:
   return std::span<const float>(values).subspan(frame * size, size);
 }
 
+std::vector<double> times_of(const SessionPredictions& session) {
+  std::vector<double> times_s;
+  for (const PredictionFrame& frame : session.frames) times_s.push_back(frame.time_s);
+  return times_s;
+}
+
 /// Scale of b over that of a from the frames of both.
 std::optional<ScaleRatio> scale_ratio(const SessionPredictions& a, const SessionPredictions& b, OverlapScale by) {
-  constexpr double kSameTime_s = 1e-4;
   std::vector<SharedFrame> depths;
   std::vector<Eigen::Vector3d> centers_a, centers_b;
-  for (std::size_t i = 0; i < a.frame_count(); ++i) {
-    for (std::size_t j = 0; j < b.frame_count(); ++j) {
-      if (std::abs(a.frames[i].time_s - b.frames[j].time_s) > kSameTime_s) continue;
-      centers_a.push_back(a.T_camera_session[i].inverse().translation());
-      centers_b.push_back(b.T_camera_session[j].inverse().translation());
-      if (a.width != b.width || a.height != b.height) continue;
-      const std::size_t size = a.pixels_per_frame();
-      depths.push_back({plane(a.depth, i, size), plane(a.depth_confidence, i, size), plane(b.depth, j, size),
-                        plane(b.depth_confidence, j, size)});
-    }
+  const bool same_pixels = a.width == b.width && a.height == b.height;
+  const std::size_t size = a.pixels_per_frame();
+  for (const auto& [i, j] : shared_frames(times_of(a), times_of(b))) {
+    centers_a.push_back(a.T_camera_session[i].inverse().translation());
+    centers_b.push_back(b.T_camera_session[j].inverse().translation());
+    if (!same_pixels) continue;
+    depths.push_back({plane(a.depth, i, size), plane(a.depth_confidence, i, size), plane(b.depth, j, size),
+                      plane(b.depth_confidence, j, size)});
   }
   return by == OverlapScale::kCenters ? scale_ratio_of_centers(centers_a, centers_b) : scale_ratio_of_depths(depths);
 }
@@ -56,10 +60,8 @@ ReadSession read_session(const Capture& capture, std::size_t index, const Recons
     for (const Warning& warning : session.predictions->warnings) outcome.flags.push_back(warning.message);
     session.frames = frames_of(*session.predictions);
     session.state.min_confidence = confidence_threshold(*session.predictions, options.confidence, options.points);
-    std::vector<double> times_s;
-    for (const SessionFrame& frame : session.frames) times_s.push_back(frame.time_s);
-    const auto poses =
-        camera_poses(capture.lio, mount_of(capture), times_s, options.prefusion.pairing, options.prefusion.max_gap_s);
+    const auto poses = camera_poses(capture.lio, mount_of(capture), times_of(*session.predictions),
+                                    options.prefusion.pairing, options.prefusion.max_gap_s);
     const auto n_placed = std::ranges::count_if(poses, [](const auto& pose) { return pose.has_value(); });
     if (n_placed == 0) throw UnsupportedError("no frame has a LiDAR-inertial pose at its time");
     if (n_placed < static_cast<std::ptrdiff_t>(poses.size())) {
@@ -132,7 +134,9 @@ std::vector<SessionState> pre_fuse_sessions(const Capture& capture, const Recons
   std::optional<SessionPredictions> before;
   for (std::size_t index = 0; index < capture.sessions.size(); ++index) {
     if (only_session && *only_session != index) continue;
-    if (progress) progress("pre-fusion", static_cast<double>(index) / static_cast<double>(capture.sessions.size()));
+    if (progress)
+      progress(stage_name(Stage::kPrefusion),
+               static_cast<double>(index) / static_cast<double>(capture.sessions.size()));
     ReadSession session = read_session(capture, index, options);
     if (session.state.is_kept()) {
       if (!kept.empty()) {

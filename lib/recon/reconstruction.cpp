@@ -19,6 +19,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr std::array<std::string_view, 4> kStageNames{"prefusion", "registration", "posegraph", "fusion"};
+
 /// What a later run must share to go on from this one's stages: the files by name, size and time of change, and the
 /// options.
 Json run_key(const Capture& capture, const ReconstructionOptions& options, const ReconstructionRun& run) {
@@ -139,7 +141,8 @@ void fuse(const Capture& capture, const ReconstructionOptions& options, const st
   std::size_t k = 0;
   for (const SessionState& state : sessions) {
     if (!state.is_kept()) continue;
-    if (progress) progress("fusion", static_cast<double>(k) / static_cast<double>(result.poses.size()));
+    if (progress)
+      progress(stage_name(Stage::kFusion), static_cast<double>(k) / static_cast<double>(result.poses.size()));
     const PlacedSession& placed = result.poses[k++];
     const SessionPredictions session = read_corrected(capture, state);
     SessionSketch& sketch = result.sketches.emplace_back();
@@ -169,10 +172,11 @@ void check_inputs(const Capture& capture, const ReconstructionRun& run) {
 
 }  // namespace
 
+std::string_view stage_name(Stage stage) { return kStageNames.at(static_cast<std::size_t>(stage)); }
+
 Stage stage_from_name(std::string_view name) {
-  constexpr std::array<std::string_view, 4> kNames{"prefusion", "registration", "posegraph", "fusion"};
-  for (std::size_t i = 0; i < kNames.size(); ++i) {
-    if (kNames[i] == name) return static_cast<Stage>(i);
+  for (std::size_t i = 0; i < kStageNames.size(); ++i) {
+    if (kStageNames[i] == name) return static_cast<Stage>(i);
   }
   throw UsageError(fmt::format("stage \"{}\" is none of prefusion, registration, posegraph, fusion", name));
 }
@@ -183,34 +187,35 @@ Reconstruction reconstruct(const Capture& capture, const ReconstructionOptions& 
   std::vector<SessionState> sessions;
   Reconstruction result;
   result.warnings = capture.warnings;
-  const auto timed = [&](const char* stage, auto&& work) {
-    if (run.progress) run.progress(stage, 0.0);
+  const auto timed = [&](Stage stage, auto&& work) {
+    if (run.progress) run.progress(stage_name(stage), 0.0);
     const auto start = std::chrono::steady_clock::now();
     work();
     result.stage_seconds.emplace_back(stage,
                                       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   };
   // Takes what an earlier run found, or finds it and keeps it.
-  const auto staged = [&](const char* stage, auto&& work) {
+  const auto staged = [&](Stage stage, auto&& work) {
     timed(stage, [&] {
-      const auto found = stages.load(stage);
+      const auto found = stages.load(stage_name(stage));
       if (found && restored(*found, sessions, result.links)) return;
       work();
-      stages.save(stage, written(sessions, result.links));
+      stages.save(stage_name(stage), written(sessions, result.links));
     });
     result.poses = placed_of(sessions);
   };
-  staged("pre-fusion", [&] { sessions = pre_fuse_sessions(capture, options, run.only_session, run.progress); });
+  staged(Stage::kPrefusion, [&] { sessions = pre_fuse_sessions(capture, options, run.only_session, run.progress); });
   require_enough(sessions);
   result.prefusion = result.poses;
   if (run.last >= Stage::kRegistration) {
-    staged("registration", [&] { result.links = register_sessions(capture, options, sessions, run.progress); });
+    staged(Stage::kRegistration, [&] { result.links = register_sessions(capture, options, sessions, run.progress); });
     result.registration = result.poses;
   }
   if (run.last >= Stage::kPoseGraph && options.pose_graph)
-    timed("pose graph", [&] { optimize_poses(options, result); });
+    timed(Stage::kPoseGraph, [&] { optimize_poses(options, result); });
   result.trajectory = trajectory_of(result.poses, capture.calibration);
-  if (run.last >= Stage::kFusion) timed("fusion", [&] { fuse(capture, options, sessions, run.progress, result); });
+  if (run.last >= Stage::kFusion)
+    timed(Stage::kFusion, [&] { fuse(capture, options, sessions, run.progress, result); });
   for (const SessionState& session : sessions) {
     result.sessions.push_back(session.outcome);
     const SessionOutcome& outcome = session.outcome;
@@ -222,12 +227,6 @@ Reconstruction reconstruct(const Capture& capture, const ReconstructionOptions& 
     }
   }
   return result;
-}
-
-Json sessions_json(const Reconstruction& reconstruction) {
-  Json sessions = Json::array();
-  for (const SessionOutcome& outcome : reconstruction.sessions) sessions.push_back(written(outcome));
-  return {{"sessions", sessions}};
 }
 
 }  // namespace cmap

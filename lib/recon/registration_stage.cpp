@@ -38,7 +38,8 @@ std::vector<SessionLink> register_sessions(const Capture& capture, const Reconst
   std::size_t n_kept = 0;
   for (SessionState& state : sessions) {
     if (!state.is_kept()) continue;
-    if (progress) progress("registration", static_cast<double>(n_kept) / static_cast<double>(sessions.size()));
+    if (progress)
+      progress(stage_name(Stage::kRegistration), static_cast<double>(n_kept) / static_cast<double>(sessions.size()));
     SessionPredictions session = read_corrected(capture, state);
     register_one(capture, options, session, state);
     if (before) {

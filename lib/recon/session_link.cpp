@@ -8,29 +8,13 @@
 #include "cmap/core/error.hpp"
 #include "cmap/recon/session_graph.hpp"
 #include "cmap/spatial/voxel_map.hpp"
+#include "recon/median.hpp"
+#include "recon/shared_frames.hpp"
 
 namespace cmap {
 namespace {
 
 constexpr std::size_t kFewestPixels = 100, kMostPixels = 40'000;
-constexpr double kSameTime_s = 1e-4;
-
-struct FramePair {
-  std::size_t a, b;
-};
-
-std::vector<FramePair> shared_frames(const PlacedSession& a, const PlacedSession& b) {
-  std::vector<FramePair> shared;
-  for (std::size_t i = 0, j = 0; i < a.time_s.size() && j < b.time_s.size();) {
-    const double difference = a.time_s[i] - b.time_s[j];
-    if (std::abs(difference) < kSameTime_s) {
-      shared.push_back({i++, j++});
-    } else {
-      difference < 0.0 ? ++i : ++j;
-    }
-  }
-  return shared;
-}
 
 Eigen::Vector3d world_point(const PlacedSession& placed, std::size_t frame, const Eigen::Vector3f& point) {
   return placed.T_world_camera[frame] * (placed.scale * point.cast<double>());
@@ -65,12 +49,6 @@ void thin_out(PixelPairs& pairs) {
   pairs.b.resize(n);
 }
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 /// The rigid motion of b onto a, with Cauchy weights about the median residual; and that median.
 Similarity motion_of(const PixelPairs& pairs, double& median_m) {
   constexpr int kSteps = 10;
@@ -79,7 +57,8 @@ Similarity motion_of(const PixelPairs& pairs, double& median_m) {
   for (int step = 0; step < kSteps; ++step) {
     motion = umeyama(pairs.b, pairs.a, ScaleModel::rigid(), weights);
     for (std::size_t i = 0; i < pairs.a.size(); ++i) residuals[i] = (motion * pairs.b[i] - pairs.a[i]).norm();
-    median_m = median_of(residuals);
+    std::vector<double> sorted = residuals;
+    median_m = median(sorted);
     const double width_m = std::max(median_m, 1e-6);
     for (std::size_t i = 0; i < weights.size(); ++i) {
       weights[i] = robust_weight(RobustKernel::kCauchy, residuals[i], width_m);
@@ -117,7 +96,7 @@ std::optional<SessionLink> link_sessions(const SessionPredictions& a, const Plac
                                          double min_confidence_a, const SessionPredictions& b,
                                          const PlacedSession& placed_b, double min_confidence_b,
                                          const LinkOptions& options, std::string& reason) {
-  const std::vector<FramePair> shared = shared_frames(placed_a, placed_b);
+  const std::vector<FramePair> shared = shared_frames(placed_a.time_s, placed_b.time_s);
   if (shared.empty()) {
     reason = "no frame is shared";
     return std::nullopt;

@@ -14,21 +14,21 @@ namespace fs = std::filesystem;
 StageFiles::StageFiles(fs::path folder, bool resume, Json key)
     : folder_(std::move(folder)), resume_(resume), key_(std::move(key)) {}
 
-std::optional<StageFiles::Json> StageFiles::load(const std::string& stage) const {
+std::optional<StageFiles::Json> StageFiles::load(std::string_view stage) const {
   if (!resume_ || folder_.empty()) return std::nullopt;
-  std::ifstream file(folder_ / (stage + ".json"));
+  std::ifstream file(folder_ / fmt::format("{}.json", stage));
   // Whatever is not as this program wrote it is found again.
   Json json = Json::parse(file, nullptr, /*allow_exceptions=*/false);
   if (!json.is_object() || !json.contains("key") || json["key"] != key_ || !json.contains("found")) return std::nullopt;
   return json["found"];
 }
 
-void StageFiles::save(const std::string& stage, const Json& found) const {
+void StageFiles::save(std::string_view stage, const Json& found) const {
   if (folder_.empty()) return;
   std::error_code error;
   fs::create_directories(folder_, error);
   if (error) throw UsageError(fmt::format("{}: cannot be made: {}", folder_.string(), error.message()));
-  OutputFile file(folder_ / (stage + ".json"));
+  OutputFile file(folder_ / fmt::format("{}.json", stage));
   file.write(Json{{"key", key_}, {"found", found}}.dump(1) + "\n");
   file.commit();
 }

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string>
+#include <string_view>
 
 namespace cmap {
 
@@ -16,8 +16,8 @@ class StageFiles {
   StageFiles(std::filesystem::path folder, bool resume, Json key);
 
   /// What an earlier run found from the same key; none unless resuming.
-  std::optional<Json> load(const std::string& stage) const;
-  void save(const std::string& stage, const Json& found) const;
+  std::optional<Json> load(std::string_view stage) const;
+  void save(std::string_view stage, const Json& found) const;
 
  private:
   std::filesystem::path folder_;

@@ -69,13 +69,7 @@ void apply_capture_config_file(CaptureOptions& options, const std::filesystem::p
 }
 
 void set_capture_option(CaptureOptions& options, const std::string& assignment) {
-  const std::size_t equals = assignment.find('=');
-  if (equals == std::string::npos || equals == 0) {
-    throw UsageError(fmt::format("\"{}\" is not section.field=value", assignment));
-  }
-  const std::string key = assignment.substr(0, equals), text = assignment.substr(equals + 1);
-  Json value = Json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (value.is_discarded()) value = text;
+  const auto [key, value] = read_assignment(assignment, "section.field=value");
   const std::size_t dot = key.find('.');
   Json config;
   if (dot == std::string::npos) {

@@ -83,15 +83,6 @@ MeshFile read_mesh(const std::filesystem::path& path) {
   throw UsageError(fmt::format("{}: a mesh is a .ply or an .obj file", path.string()));
 }
 
-#ifdef CMAP_WITH_IMAGES
-RgbImage read_texture(const std::filesystem::path& path) { return read_image(path); }
-#else
-RgbImage read_texture(const std::filesystem::path& path) {
-  throw UnsupportedError(
-      fmt::format("{}: this cmap was built without photographs (libopencv-imgcodecs-dev)", path.string()));
-}
-#endif
-
 /// Whether the file itself says what color anything has.
 bool has_own_colors(const MeshFile& file) { return !file.colors.empty() || file.materials.size() > 1; }
 
@@ -104,7 +95,7 @@ MeshColors colors_of(MeshFile&& file, const Array<Eigen::Vector3f>& vertices) {
   colors.uv = std::move(file.uv);
   for (const MeshMaterial& material : file.materials) {
     const bool is_used = colors.colors.empty() && !material.image.empty();
-    colors.images.push_back(is_used ? read_texture(material.image) : RgbImage{});
+    colors.images.push_back(is_used ? read_image(material.image) : RgbImage{});
   }
   colors.materials = std::move(file.materials);
   return colors;

@@ -1,6 +1,7 @@
 #include "sim/ray_caster.hpp"
 
 #include <embree3/rtcore.h>
+#include <tbb/global_control.h>
 
 #include <cstring>
 #include <limits>
@@ -8,9 +9,6 @@
 
 namespace cmap {
 namespace {
-
-// One thread builds, so that triangles at equal distance are met in the same order in every run.
-constexpr const char* kDeviceSettings = "threads=1,set_affinity=0";
 
 RTCRayHit to_embree(const Ray& ray) {
   RTCRayHit out{};
@@ -68,7 +66,7 @@ struct RayCaster::Handles {
 
 RayCaster::RayCaster(std::span<const Eigen::Vector3f> vertices, std::span<const std::array<std::uint32_t, 3>> triangles)
     : handles_(std::make_unique<Handles>()) {
-  handles_->device = rtcNewDevice(kDeviceSettings);
+  handles_->device = rtcNewDevice("set_affinity=0");
   if (handles_->device == nullptr) throw std::runtime_error("Embree does not start");
   handles_->scene = rtcNewScene(handles_->device);
   rtcSetSceneFlags(handles_->scene, RTC_SCENE_FLAG_ROBUST);
@@ -82,7 +80,12 @@ RayCaster::RayCaster(std::span<const Eigen::Vector3f> vertices, std::span<const 
   rtcCommitGeometry(mesh);
   rtcAttachGeometry(handles_->scene, mesh);
   rtcReleaseGeometry(mesh);
-  rtcCommitScene(handles_->scene);
+  {
+    // One thread builds, so that triangles at equal distance are met in the same order in every run. Not by the
+    // device's own setting "threads": that would limit all of the process's parallel loops from then on.
+    const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+    rtcCommitScene(handles_->scene);
+  }
   if (rtcGetDeviceError(handles_->device) != RTC_ERROR_NONE) {
     throw std::runtime_error("Embree cannot build the scene (out of memory?)");
   }

@@ -1,11 +1,10 @@
 #include <ceres/cost_function.h>
 
-#include <cstdlib>
-
 #include "cmap/graph/g2o_file.hpp"
 #include "graph/graph_testing.hpp"
 #include "graph/link_error.hpp"
 #include "graph/solver.hpp"
+#include "io/real_data.hpp"
 
 // Optima of public pose graphs: of this module's cost (found independently, with automatic derivatives on quaternions
 // and translations in blocks of their own), and of SE-Sync's, as its paper prints them (Rosen et al. 2019, tables).
@@ -70,17 +69,8 @@ double sesync_objective(const NodeGraph& graph) {
   return F;
 }
 
-/// Public graphs outside the repository: $CMAP_DATA_DIR, or shared/data beside it.
-class PublishedOptima : public ::testing::Test {
+class PublishedOptima : public testing::RealData {
  protected:
-  void SetUp() override {
-    if (const char* folder = std::getenv("CMAP_DATA_DIR")) {
-      folder_ = folder;
-    } else if (const char* source = std::getenv("CMAP_SOURCE_DIR")) {
-      folder_ = std::filesystem::path(source) / "../shared/data";
-    }
-    if (!std::filesystem::is_directory(folder_ / "g2o")) GTEST_SKIP() << "no real data: set CMAP_DATA_DIR";
-  }
   PoseGraph read(const std::string& name) const { return read_g2o(folder_ / "g2o" / (name + ".g2o")).graph; }
 
   /// Optima are printed with nine digits and more; SE-Sync prints four.
@@ -99,8 +89,6 @@ class PublishedOptima : public ::testing::Test {
     EXPECT_TRUE(outcome.converged) << name;
     EXPECT_NEAR(sesync_objective(nodes), optimum, kRelative * optimum) << name;
   }
-
-  std::filesystem::path folder_;
 };
 
 TEST_F(PublishedOptima, SmallGridFromBothStarts) {

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -18,7 +18,9 @@ namespace cmap {
 
 enum class Stage { kPrefusion, kRegistration, kPoseGraph, kFusion };
 
-/// "prefusion", "registration", "posegraph" or "fusion". Throws UsageError for anything else.
+/// "prefusion", "registration", "posegraph" or "fusion".
+std::string_view stage_name(Stage stage);
+/// Throws UsageError for anything else.
 Stage stage_from_name(std::string_view name);
 
 /// What became of one session.
@@ -58,7 +60,7 @@ struct Reconstruction {
   std::vector<SessionSketch> sketches;  ///< of the sessions in the map, where it was fused
   Trajectory trajectory;                ///< world_T_imu at the frames' times
   std::vector<Warning> warnings;
-  std::vector<std::pair<std::string, double>> stage_seconds;
+  std::vector<std::pair<Stage, double>> stage_seconds;
 };
 
 struct ReconstructionRun {
@@ -77,8 +79,5 @@ struct ReconstructionRun {
 /// are left.
 Reconstruction reconstruct(const Capture& capture, const ReconstructionOptions& options,
                            const ReconstructionRun& run = {});
-
-/// As sessions.json.
-nlohmann::ordered_json sessions_json(const Reconstruction& reconstruction);
 
 }  // namespace cmap
