@@ -39,7 +39,7 @@ class TileRays {
   /// Between centers: rays a pixel apart differ so little that bilinear interpolation is off by under 1e-3 px.
   /// Not quite of unit length.
   Eigen::Vector3d between(double x, double y) const {
-    const int ix = static_cast<int>(std::floor(x)), iy = static_cast<int>(std::floor(y));
+    const int ix = static_cast<int>(x + 1.0) - 1, iy = static_cast<int>(y + 1.0) - 1;  // floor of -1 and more
     const double tx = x - ix, ty = y - iy;
     const Eigen::Vector3d upper = (1.0 - tx) * at(ix, iy) + tx * at(ix + 1, iy);
     const Eigen::Vector3d lower = (1.0 - tx) * at(ix, iy + 1) + tx * at(ix + 1, iy + 1);
@@ -156,13 +156,7 @@ class TilePainter {
         y0_(y0),
         rays_(camera, R_world_camera, x0, y0) {}
 
-  void paint(CameraView& view) const {
-    paint_depth(view);
-    paint_color(view);
-  }
-
- private:
-  void paint_depth(CameraView& view) const {
+  void paint_depth(Array<float>& depth_m) const {
     for (int y = 0; y < kTile_px; y += kSide) {
       for (int x = 0; x < kTile_px; x += kSide) {
         ViewCaster::Directions rays;
@@ -173,14 +167,14 @@ class TilePainter {
           const int px = x0_ + x + k % kSide, py = y0_ + y + k / kSide;
           if (px >= camera_.width || py >= camera_.height) continue;
           const auto lane = static_cast<std::size_t>(k);
-          view.depth_m[pixel_index(px, py)] = static_cast<float>(
+          depth_m[pixel_index(px, py)] = static_cast<float>(
               std::isfinite(distances[lane]) ? distances[lane] * rays[lane].dot(axis_) : distances[lane]);
         }
       }
     }
   }
 
-  void paint_color(CameraView& view) const {
+  void paint_color(RgbImage& image) const {
     std::vector<Eigen::Vector3f> sums(kTile_px * kTile_px, Eigen::Vector3f::Zero());
     const int s = options_.supersampling;
     for (int y = 0; y < kTile_px * s; y += kSide) {
@@ -200,11 +194,12 @@ class TilePainter {
       for (int x = 0; x < kTile_px && x0_ + x < camera_.width; ++x) {
         const double gain = options_.exposure_gain * vignette(camera_, options_, x0_ + x, y0_ + y);
         const Eigen::Vector3f& sum = sums[static_cast<std::size_t>(y * kTile_px + x)];
-        view.image.pixels[pixel_index(x0_ + x, y0_ + y)] = to_rgb8(static_cast<float>(255.0 * gain / (s * s)) * sum);
+        image.pixels[pixel_index(x0_ + x, y0_ + y)] = to_rgb8(static_cast<float>(255.0 * gain / (s * s)) * sum);
       }
     }
   }
 
+ private:
   /// Through sample (x, y) of the tile's grid of supersampling x supersampling samples per pixel.
   Eigen::Vector3d sample_ray(int x, int y) const {
     const int s = options_.supersampling;
@@ -230,16 +225,14 @@ void check(const ViewOptions& options) {
   require_between("exposure_gain", options.exposure_gain, 1e-3, 1e3);
 }
 
-}  // namespace
+std::size_t pixel_count(const CameraModel& camera) {
+  return static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
+}
 
-CameraView render_view(const Scene& scene, const CameraModel& camera, const Eigen::Isometry3d& T_world_camera,
-                       const ViewOptions& options) {
-  check(camera);
-  check(options);
-  CameraView view;
-  const std::size_t pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
-  view.image = {camera.width, camera.height, Array<Rgb8>(pixels)};
-  view.depth_m.resize(pixels);
+/// Calls paint(painter) for every tile, in parallel.
+template <class Paint>
+void for_each_tile(const Scene& scene, const CameraModel& camera, const Eigen::Isometry3d& T_world_camera,
+                   const ViewOptions& options, Paint&& paint) {
   const ViewCaster caster(scene, T_world_camera);
   const int tiles_x = (camera.width + kTile_px - 1) / kTile_px, tiles_y = (camera.height + kTile_px - 1) / kTile_px;
   const auto tiles = static_cast<std::size_t>(tiles_x) * static_cast<std::size_t>(tiles_y);
@@ -247,10 +240,32 @@ CameraView render_view(const Scene& scene, const CameraModel& camera, const Eige
     for (std::size_t tile = begin; tile < end; ++tile) {
       const int x0 = kTile_px * static_cast<int>(tile % static_cast<std::size_t>(tiles_x));
       const int y0 = kTile_px * static_cast<int>(tile / static_cast<std::size_t>(tiles_x));
-      TilePainter(camera, T_world_camera.linear(), options, caster, x0, y0).paint(view);
+      paint(TilePainter(camera, T_world_camera.linear(), options, caster, x0, y0));
     }
   });
+}
+
+}  // namespace
+
+CameraView render_view(const Scene& scene, const CameraModel& camera, const Eigen::Isometry3d& T_world_camera,
+                       const ViewOptions& options) {
+  check(camera);
+  check(options);
+  CameraView view;
+  view.image = {camera.width, camera.height, Array<Rgb8>(pixel_count(camera))};
+  view.depth_m.resize(pixel_count(camera));
+  for_each_tile(scene, camera, T_world_camera, options, [&](const TilePainter& painter) {
+    painter.paint_depth(view.depth_m);
+    painter.paint_color(view.image);
+  });
   return view;
+}
+
+Array<float> render_depth(const Scene& scene, const CameraModel& camera, const Eigen::Isometry3d& T_world_camera) {
+  check(camera);
+  Array<float> depth_m(pixel_count(camera));
+  for_each_tile(scene, camera, T_world_camera, {}, [&](const TilePainter& painter) { painter.paint_depth(depth_m); });
+  return depth_m;
 }
 
 }  // namespace cmap

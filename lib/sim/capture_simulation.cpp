@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <deque>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
@@ -15,6 +15,7 @@
 #include "cmap/io/image_file.hpp"
 #include "cmap/io/output_file.hpp"
 #include "cmap/io/point_cloud_file.hpp"
+#include "cmap/sim/network_input.hpp"
 #include "cmap/sim/random_stream.hpp"
 #include "cmap/sim/seen_surface.hpp"
 #include "sim/capture_descriptions.hpp"
@@ -91,7 +92,6 @@ class CaptureRun {
     write_motion();
     write_scans();
     write_images();
-    write_sessions();
     report("map", 0.9);
     write_map();
     write_text(truth_ / "options.json", to_json(o_).dump(1) + "\n");
@@ -155,50 +155,56 @@ class CaptureRun {
     });
   }
 
-  void write_images() {
-    const CameraModel camera = camera_of(o_.camera);
-    for_each("images", image_times_.size(), 0.3, 0.6, [&](std::size_t i) {
-      const Eigen::Isometry3d T = T_world_camera(image_times_[i]);
-      CameraView view = render_view(scene_, camera, T, {o_.camera.supersampling, gain(i), o_.camera.vignetting});
-      add_pixel_noise(view.image, i);
-      const fs::path file = writer_.add_image(stated_time(i), "." + o_.camera.format);
-      write_image(view.image, file);
-      image_names_.push_back(file.filename().string());
-      if (i == image_times_.size() / 2) middle_view_ = std::move(view);
-    });
+  CameraView take_image(std::size_t i, const CameraModel& camera) {
+    CameraView view = render_view(scene_, camera, T_world_camera(image_times_[i]),
+                                  {o_.camera.supersampling, gain(i), o_.camera.vignetting});
+    add_pixel_noise(view.image, i);
+    const fs::path file = writer_.add_image(stated_time(i), "." + o_.camera.format);
+    write_image(view.image, file);
+    image_names_.push_back(file.filename().string());
+    return view;
   }
 
   double stated_time(std::size_t image) const { return image_times_[image] + o_.stated.image_time_error_s; }
 
-  NetworkFrame network_frame(std::size_t image, const CameraModel& network) const {
+  NetworkFrame network_frame(std::size_t i, const RgbImage& image, const CameraModel& camera,
+                             const CameraModel& network) const {
     NetworkFrame frame;
-    frame.frame = {0, stated_time(image), image_names_[image], o_.camera.width_px, o_.camera.height_px};
-    frame.T_world_camera = T_world_camera(image_times_[image]);
-    frame.view = render_view(scene_, network, frame.T_world_camera, {o_.predictions.supersampling, gain(image), 0.0});
+    frame.frame = {0, stated_time(i), image_names_[i], camera.width, camera.height};
+    frame.T_world_camera = T_world_camera(image_times_[i]);
+    frame.view = {network_image(image, camera, network), render_depth(scene_, network, frame.T_world_camera)};
     return frame;
   }
 
-  void write_sessions() {
-    const CameraModel network = network_camera(camera_of(o_.camera), o_.predictions.width_px);
+  /// Pictures, and what the network makes of them: a session as soon as its last picture is there.
+  void write_images() {
+    const CameraModel camera = camera_of(o_.camera), network = network_camera(camera, o_.predictions.width_px);
     const auto stride = static_cast<std::size_t>(o_.predictions.image_stride);
     const auto sessions = cut_sessions((image_times_.size() + stride - 1) / stride, o_.predictions.session_length,
                                        o_.predictions.session_overlap);
-    std::map<std::size_t, NetworkFrame> rendered;  // of this session, and those that the next one shares
-    for_each("predictions", sessions.size(), 0.6, 0.9, [&](std::size_t number) {
-      const auto [first, count] = sessions[number];
-      std::erase_if(rendered, [&, from = first](const auto& frame) { return frame.first < from; });
-      std::vector<const NetworkFrame*> frames;
-      for (std::size_t f = first; f < first + count; ++f) {
-        if (!rendered.contains(f)) rendered.emplace(f, network_frame(f * stride, network));
-        frames.push_back(&rendered.at(f));
-      }
-      const SimulatedSession session = simulate_session(frames, network, number, o_.predictions, seed_);
-      writer_.add_session(session.predictions);
-      const std::string name = fmt::format("session_{:04}", number);
-      scales_["scales"][name] = session.unit_m;
-      if (session.pose_stretch != 1.0) scales_["pose_stretch"][name] = session.pose_stretch;
+    std::size_t next = 0;             // session
+    std::deque<NetworkFrame> frames;  // from the next session's first one on
+    for_each("images", image_times_.size(), 0.3, 0.9, [&](std::size_t i) {
+      CameraView view = take_image(i, camera);
+      if (i % stride == 0) frames.push_back(network_frame(i, view.image, camera, network));
+      if (i == image_times_.size() / 2) middle_view_ = std::move(view);
+      if (next == sessions.size() || frames.size() < sessions[next].count) return;
+      write_session(next, frames, network);
+      if (++next == sessions.size()) return;
+      const std::size_t passed = sessions[next].first - sessions[next - 1].first;
+      frames.erase(frames.begin(), frames.begin() + static_cast<std::ptrdiff_t>(passed));
     });
     write_text(truth_ / "scales.json", scales_.dump(1) + "\n");
+  }
+
+  void write_session(std::size_t number, const std::deque<NetworkFrame>& frames, const CameraModel& network) {
+    std::vector<const NetworkFrame*> pointers;
+    for (const NetworkFrame& frame : frames) pointers.push_back(&frame);
+    const SimulatedSession session = simulate_session(pointers, network, number, o_.predictions, seed_);
+    writer_.add_session(session.predictions);
+    const std::string name = fmt::format("session_{:04}", number);
+    scales_["scales"][name] = session.unit_m;
+    if (session.pose_stretch != 1.0) scales_["pose_stretch"][name] = session.pose_stretch;
   }
 
   void write_map() const {

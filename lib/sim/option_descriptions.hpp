@@ -69,7 +69,6 @@ void describe(Fields& f, FieldsOf<Fields, PredictionOptions>& o) {
   f.field("session_overlap", o.session_overlap, NumberRange{0, 1e6});
   f.field("image_stride", o.image_stride, NumberRange{1, 1e6});
   f.field("width_px", o.width_px, NumberRange{14, 1e4});
-  f.field("supersampling", o.supersampling, NumberRange{1, 8});
   f.field("unit_m", o.unit_m, kPositive);
   f.field("unit_factor", o.unit_factor, NumberRange{1.0, 1e6});
   f.field("depth_noise_fraction", o.depth_noise_fraction, kNotNegative);

@@ -6,6 +6,7 @@
 
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
+#include "cmap/sim/network_input.hpp"
 #include "sim/sensor_testing.hpp"
 
 namespace cmap {
@@ -21,36 +22,6 @@ CameraModel camera(int width, int height, double focal_px) {
   c.cx = 0.5 * width;
   c.cy = 0.5 * height;
   return c;
-}
-
-TEST(NetworkCamera, HasTheSizesOfTheRelease) {
-  const auto size = [](int w, int h) {
-    const CameraModel c = network_camera(camera(w, h, 1000.0));
-    return std::pair(c.width, c.height);
-  };
-  EXPECT_EQ(size(2448, 2048), std::pair(518, 434));
-  EXPECT_EQ(size(1440, 1080), std::pair(518, 392));
-  EXPECT_EQ(size(1280, 1024), std::pair(518, 420));
-  EXPECT_EQ(size(1241, 376), std::pair(518, 154));
-  EXPECT_EQ(size(1000, 1000), std::pair(518, 518));
-  EXPECT_EQ(size(1000, 500), std::pair(518, 252)) << "18.5 patches: half to even";
-  EXPECT_THROW(network_camera(camera(640, 480, 500), 100), UsageError);
-}
-
-TEST(NetworkCamera, ScalesTheAxesApartAndCropsTallImages) {
-  CameraModel mars = camera(2448, 2048, 1444.43);
-  mars.cx = 1178.0;
-  mars.distortion = {-0.05, 0.12, 0, 0};
-  const CameraModel c = network_camera(mars);
-  EXPECT_DOUBLE_EQ(c.fx, 1444.43 * 518 / 2448);
-  EXPECT_DOUBLE_EQ(c.fy, 1444.43 * 434 / 2048);
-  EXPECT_EQ(c.cx, 259.0);
-  EXPECT_EQ(c.cy, 217.0);
-  EXPECT_TRUE(c.distortion.empty());
-  const CameraModel tall = network_camera(camera(1080, 1920, 900.0));
-  EXPECT_EQ(tall.height, 518);
-  EXPECT_DOUBLE_EQ(tall.fy, 900.0 * 924 / 1920) << "scaled as the 924 rows, of which 518 are left";
-  EXPECT_EQ(tall.cy, 259.0);
 }
 
 TEST(CutSessions, ShareTheirOverlap) {

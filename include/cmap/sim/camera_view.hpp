@@ -27,4 +27,7 @@ struct CameraView {
 CameraView render_view(const Scene& scene, const CameraModel& camera, const Eigen::Isometry3d& T_world_camera,
                        const ViewOptions& options = {});
 
+/// Its depth alone.
+Array<float> render_depth(const Scene& scene, const CameraModel& camera, const Eigen::Isometry3d& T_world_camera);
+
 }  // namespace cmap

@@ -88,7 +88,7 @@ struct StatedOptions {
 /// What is kept of the truth.
 struct TruthOptions {
   double map_points_per_m2 = 100.0;  ///< of truth/map.ply: surfaces that some picture saw
-  double map_max_distance_m = 60.0;     ///< from the camera
+  double map_max_distance_m = 60.0;  ///< from the camera
   double trajectory_rate_hz = 100.0;
 };
 

@@ -20,7 +20,6 @@ struct PredictionOptions {
   int session_overlap = 10;  ///< frames that two neighboring sessions share
   int image_stride = 1;      ///< every n-th image becomes a frame
   int width_px = 518;        ///< the network's input, a multiple of 14
-  int supersampling = 2;     ///< rays per pixel along each axis, for its picture
 
   double unit_m = 10.0;      ///< a session's unit of length, drawn log-uniformly
   double unit_factor = 2.0;  ///< from unit_m / factor to unit_m * factor; 1: all the same
@@ -62,17 +61,11 @@ struct SessionRange {
 /// `overlap` frames, unless it is the only one. Throws UsageError unless 0 <= overlap < length.
 std::vector<SessionRange> cut_sessions(std::size_t frames, int length, int overlap);
 
-/// The camera of the network's input in VGGT's "crop" mode: width W, height H = 14 round(h W / w / 14) (half to even),
-/// focal lengths scaled by W / w and H / h, then at most W rows around the middle; the principal point at (W/2, H/2),
-/// as VGGT takes it to be, and no distortion: the picture is undistorted and recentered before. Throws UsageError where
-/// W is no positive multiple of 14.
-CameraModel network_camera(const CameraModel& camera, int width_px = 518);
-
 /// A frame as the network gets it, and the truth.
 struct NetworkFrame {
   PredictionFrame frame;  ///< `index` is overwritten
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  CameraView view;  ///< through network_camera()
+  CameraView view;  ///< network_image() of the picture, and the depth through network_camera()
 };
 
 struct SimulatedSession {
