@@ -43,15 +43,14 @@ struct Mean {
 }  // namespace
 
 double confidence_threshold(const SessionPredictions& session, const ConfidenceCut& cut, PointSource source) {
-  std::vector<float> known;
+  std::vector<float> enough;
   for (const float c : confidence_of(session, source)) {
-    if (c > 0.0f) known.push_back(c);
+    if (c > 0.0f && c >= cut.floor) enough.push_back(c);
   }
-  const auto n_dropped = static_cast<std::size_t>(cut.lowest_share * static_cast<double>(known.size()));
-  if (n_dropped < known.size()) {
-    std::ranges::nth_element(known, known.begin() + static_cast<std::ptrdiff_t>(n_dropped));
-    const double threshold = std::max<double>(cut.floor, known[n_dropped]);
-    if (std::ranges::any_of(known, [&](float c) { return c >= threshold; })) return threshold;
+  const auto n_dropped = static_cast<std::size_t>(cut.lowest_share * static_cast<double>(enough.size()));
+  if (n_dropped < enough.size()) {
+    std::ranges::nth_element(enough, enough.begin() + static_cast<std::ptrdiff_t>(n_dropped));
+    return enough[n_dropped];
   }
   throw UnsupportedError(fmt::format("no pixel has a confidence of {:g} or more", cut.floor));
 }

@@ -10,9 +10,10 @@
 namespace cmap {
 
 /// Which of a session's pixels become points.
+/// Which of a session's pixels are points. First the floor: sky has confidence 1, and must not use up the share.
 struct ConfidenceCut {
-  double lowest_share = 0.2;  ///< of the session's pixels with a depth, by confidence, that are dropped
-  double floor = 1.5;         ///< and all below this
+  double floor = 1.5;         ///< pixels below this are dropped,
+  double lowest_share = 0.2;  ///< and this share of the others, the lowest
 };
 
 enum class PointSource {
