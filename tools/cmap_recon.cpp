@@ -38,7 +38,7 @@ struct Arguments {
   std::vector<std::string> settings;
   std::string registration;
   int only_session = -1;
-  bool resume = false, print_options = false;
+  bool resume = false, session_maps = false, print_options = false;
   cmap::CommonArguments common;
 };
 
@@ -65,6 +65,7 @@ void add_options(CLI::App& app, Arguments& a) {
       ->type_name("K")
       ->check(CLI::Range(0, 1'000'000).description(""));
   app.add_flag("--resume", a.resume, "go on from the stages that an earlier run of the same inputs left in DIR");
+  app.add_flag("--session-maps", a.session_maps, "also each session's own map, DIR/sessions/NAME.ply");
   cmap::add_common_options(app, a.common, "no table and no progress");
   cmap::refuse_empty(app, {"--output", "--evaluate", "--figure", "--config", "--set"});
 }
@@ -98,7 +99,6 @@ void evaluate_map(const Arguments& a, cmap::PointCloudFile reference, const std:
 #ifdef CMAP_WITH_RENDER
 void check_figure(const Arguments& a) {
   if (a.figure.empty()) return;
-  if (a.stop_after != "fusion") throw cmap::UsageError("--figure shows a whole run: not with --stop-after");
   cmap::check_image_name(a.figure);
   cmap::require_writable(a.figure);
 }
@@ -113,9 +113,8 @@ void write_figure(const cmap::Reconstruction&, const std::string&, cmap::OutputF
 #endif
 
 void deliver(const Arguments& a, const cmap::Reconstruction& r, const cmap::ReconstructionOptions& options,
-             const std::string& command) {
+             const std::string& command, cmap::OutputFiles& files) {
   const fs::path folder(a.output);
-  cmap::OutputFiles files;
   if (a.stop_after == "fusion") {
     files.add(folder / "map.ply", [&](cmap::OutputFile& file) { cmap::write_ply(file, r.map); });
   }
@@ -129,6 +128,33 @@ void deliver(const Arguments& a, const cmap::Reconstruction& r, const cmap::Reco
   files.commit();
 }
 
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw cmap::UsageError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+}
+
+void check_arguments(const Arguments& a) {
+  if (a.capture.empty() || a.output.empty()) throw cmap::UsageError("CAPTURE and --output are required");
+  for (const auto& [given, option] :
+       {std::pair(!a.reference.empty(), "--evaluate"), std::pair(!a.figure.empty(), "--figure"),
+        std::pair(a.session_maps, "--session-maps")}) {
+    if (given && a.stop_after != "fusion") {
+      throw cmap::UsageError(fmt::format("{} needs the whole run: not with --stop-after", option));
+    }
+  }
+  check_figure(a);
+}
+
+void make_output_folders(const Arguments& a) {
+  const fs::path folder(a.output);
+  make_folder(folder);
+  if (a.session_maps) make_folder(folder / "sessions");
+  for (const char* name : {"map.ply", "trajectory.tum", "sessions.json", "report.json"}) {
+    cmap::require_writable(folder / name);
+  }
+}
+
 ExitCode run(const CLI::App& app, const Arguments& a, const std::string& command) {
   const cmap::ThreadLimit limit(a.common.threads);
   const cmap::ReconstructionOptions options = resolve_options(a);
@@ -136,30 +162,28 @@ ExitCode run(const CLI::App& app, const Arguments& a, const std::string& command
     cmap::print(cmap::to_json(options).dump(2) + "\n");
     return ExitCode::kDone;
   }
-  if (a.capture.empty() || a.output.empty()) throw cmap::UsageError("CAPTURE and --output are required");
-  check_figure(a);
-  if (!a.reference.empty() && a.stop_after != "fusion") {
-    throw cmap::UsageError("--evaluate needs the whole run: not with --stop-after");
-  }
+  check_arguments(a);
   std::optional<cmap::PointCloudFile> reference;
   if (!a.reference.empty()) reference = cmap::read_point_cloud(a.reference, {.sha256 = true});
   const cmap::Capture capture = cmap::open_capture(a.capture);
-  std::error_code error;
-  fs::create_directories(a.output, error);
-  if (error) throw cmap::UsageError(fmt::format("{}: cannot be made: {}", a.output, error.message()));
-  for (const char* name : {"map.ply", "trajectory.tum", "sessions.json", "report.json"}) {
-    cmap::require_writable(fs::path(a.output) / name);
-  }
+  make_output_folders(a);
   cmap::ProgressBar progress(!a.common.quiet);
+  cmap::OutputFiles files;
   cmap::ReconstructionRun how;
   how.last = cmap::stage_from_name(a.stop_after);
   if (app.get_option("--only-session")->count() > 0) how.only_session = static_cast<std::size_t>(a.only_session);
   how.stages = fs::path(a.output) / "stages";
   how.resume = a.resume;
   how.progress = [&](std::string_view stage, double done) { progress.update(stage, done); };
+  if (a.session_maps) {
+    how.session_map = [&](const std::string& session, const cmap::PointCloud& map) {
+      files.add(fs::path(a.output) / "sessions" / (session + ".ply"),
+                [&](cmap::OutputFile& file) { cmap::write_ply(file, map); });
+    };
+  }
   const cmap::Reconstruction result = cmap::reconstruct(capture, options, how);
   for (const cmap::Warning& warning : result.warnings) fmt::print(stderr, "warning: {}\n", warning.message);
-  deliver(a, result, options, command);
+  deliver(a, result, options, command, files);
   if (reference) evaluate_map(a, std::move(*reference), command);
   return ExitCode::kDone;
 }

@@ -135,22 +135,27 @@ void add_sketch(const FramePoints& points, std::size_t frame, std::size_t n_fram
   }
 }
 
-void fuse(const Capture& capture, const ReconstructionOptions& options, const std::vector<SessionState>& sessions,
-          const ProgressSink& progress, Reconstruction& result) {
+void fuse(const Capture& capture, const ReconstructionOptions& options, const ReconstructionRun& run,
+          const std::vector<SessionState>& sessions, Reconstruction& result) {
   MapFusion fusion(options.fusion_voxel_m);
   std::size_t k = 0;
   for (const SessionState& state : sessions) {
     if (!state.is_kept()) continue;
-    if (progress)
-      progress(stage_name(Stage::kFusion), static_cast<double>(k) / static_cast<double>(result.poses.size()));
+    if (run.progress) {
+      run.progress(stage_name(Stage::kFusion), static_cast<double>(k) / static_cast<double>(result.poses.size()));
+    }
     const PlacedSession& placed = result.poses[k++];
     const SessionPredictions session = read_corrected(capture, state);
     SessionSketch& sketch = result.sketches.emplace_back();
+    std::optional<MapFusion> alone;
+    if (run.session_map) alone.emplace(options.fusion_voxel_m);
     for (std::size_t i = 0; i < session.frame_count(); ++i) {
       const FramePoints points = frame_points(session, i, state.min_confidence, options.points);
       fusion.add(points, placed.T_world_camera[i], placed.scale);
+      if (alone) alone->add(points, placed.T_world_camera[i], placed.scale);
       add_sketch(points, i, session.frame_count(), sketch);
     }
+    if (alone) run.session_map(state.outcome.name, alone->finish(options.fusion_doubt));
   }
   result.points_fused = fusion.points_added();
   result.map = fusion.finish(options.fusion_doubt);
@@ -214,8 +219,7 @@ Reconstruction reconstruct(const Capture& capture, const ReconstructionOptions& 
   if (run.last >= Stage::kPoseGraph && options.pose_graph)
     timed(Stage::kPoseGraph, [&] { optimize_poses(options, result); });
   result.trajectory = trajectory_of(result.poses, capture.calibration);
-  if (run.last >= Stage::kFusion)
-    timed(Stage::kFusion, [&] { fuse(capture, options, sessions, run.progress, result); });
+  if (run.last >= Stage::kFusion) timed(Stage::kFusion, [&] { fuse(capture, options, run, sessions, result); });
   for (const SessionState& session : sessions) {
     result.sessions.push_back(session.outcome);
     const SessionOutcome& outcome = session.outcome;

@@ -33,6 +33,15 @@ def lines_kept(path, keep):
     path.write_text("".join(row + "\n" for row in rows if not row[0].isdigit() or keep(row)))
 
 
+def read_positions(path):
+    """Of a map as cmap_recon writes it: float coordinates first, colors behind."""
+    header, data = path.read_bytes().split(b"end_header\n", 1)
+    names = [line.split()[1:] for line in header.decode().splitlines() if line.startswith("property")]
+    kinds = {"double": "<f8", "float": "<f4", "uchar": "u1"}
+    table = np.frombuffer(data, dtype=[(name, kinds[kind]) for kind, name in names])
+    return np.stack([table[axis].astype(float) for axis in "xyz"], axis=1)
+
+
 def swapped(path, row, column=0, separator=","):
     """The times of a row and the next change places."""
     rows = [line.split(separator) for line in path.read_text().splitlines()]
@@ -232,6 +241,20 @@ class Recon(unittest.TestCase):
             self.assertLess(abs(found[name]["scale"] / scale - 1.0), 0.02, name)
 
     # Inputs that are missing.
+
+    def test_session_maps_are_the_parts_of_the_map(self):
+        voxel_m = 0.1
+        self.recon("--session-maps", "--set", "fusion_doubt=0", "--set", f"fusion_voxel_m={voxel_m}")
+        maps = sorted((self.output / "sessions").iterdir())
+        self.assertEqual([path.stem for path in maps], sorted(self.truth))
+        voxels = {path: set(map(tuple, np.floor(read_positions(path) / voxel_m).astype(int))) for path in
+                  [self.output / "map.ply", *maps]}
+        whole = voxels.pop(self.output / "map.ply")
+        # A mean may lie within rounding of its voxel's border.
+        self.assertLess(len(whole ^ set.union(*voxels.values())), 1e-3 * len(whole))
+        for part in voxels.values():
+            self.assertLess(len(part), 0.9 * len(whole))
+        self.recon("--session-maps", "--stop-after", "registration", code=USAGE)
 
     def test_stages_without_inputs(self):
         for missing, message in (("predictions", "predictions: no sessions"), ("lio.tum", "lio.tum: missing"),

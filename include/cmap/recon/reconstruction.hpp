@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -69,6 +70,8 @@ struct ReconstructionRun {
   std::filesystem::path stages;  ///< folder of what earlier runs found and this one finds; empty: none
   bool resume = false;           ///< take from there what was found from the same inputs and options
   ProgressSink progress;
+  /// Gets each session's own map, fused as the whole is, as soon as it is there; empty: nobody wants them.
+  std::function<void(const std::string& session, const PointCloud& map)> session_map;
 };
 
 /// Sessions of VGGT predictions, LiDAR scans and LiDAR-inertial poses become one metric colored map: pre-fusion,
