@@ -86,8 +86,13 @@ void require_enough(const std::vector<SessionState>& sessions) {
       fmt::format("{} of {} sessions had to be dropped; the first, {}", n_all - n_kept, n_all, first_reason));
 }
 
-void optimize_poses(const ReconstructionOptions& options, Reconstruction& result) {
-  const PoseGraph graph = session_graph(result.poses, result.links, {.lidar_priors = options.lidar_priors});
+void optimize_poses(const Capture& capture, const ReconstructionOptions& options, Reconstruction& result) {
+  std::vector<OdometryPoses> odometry;
+  for (const PlacedSession& session : result.poses) {
+    odometry.push_back(camera_poses(capture.lio, {capture.calibration.T_imu_lidar, capture.calibration.T_lidar_camera},
+                                    session.time_s, options.prefusion.pairing, options.prefusion.max_gap_s));
+  }
+  const PoseGraph graph = session_graph(result.poses, result.links, odometry, {.lidar_priors = options.lidar_priors});
   const PoseGraphResult found = optimize(graph);
   result.graph_cost_before = found.initial_cost;
   result.graph_cost_after = found.final_cost;
@@ -217,7 +222,7 @@ Reconstruction reconstruct(const Capture& capture, const ReconstructionOptions& 
     result.registration = result.poses;
   }
   if (run.last >= Stage::kPoseGraph && options.pose_graph)
-    timed(Stage::kPoseGraph, [&] { optimize_poses(options, result); });
+    timed(Stage::kPoseGraph, [&] { optimize_poses(capture, options, result); });
   result.trajectory = trajectory_of(result.poses, capture.calibration);
   if (run.last >= Stage::kFusion) timed(Stage::kFusion, [&] { fuse(capture, options, run, sessions, result); });
   for (const SessionState& session : sessions) {

@@ -3,11 +3,14 @@
 #include <cmath>
 
 #include "cmap/core/error.hpp"
+#include "recon/median.hpp"
 
 namespace cmap {
 namespace {
 
 constexpr double kDeg = M_PI / 180.0;
+constexpr double kPriorSigma_rad = 0.5 * kDeg;
+constexpr double kOdometrySigma_m = 0.1;
 
 PoseGraph::Information information(double sigma_m, double sigma_rad) {
   PoseGraph::Information result = PoseGraph::Information::Zero();
@@ -31,6 +34,19 @@ std::vector<std::size_t> first_nodes(std::span<const PlacedSession> sessions) {
     n += session.T_world_camera.size();
   }
   return first;
+}
+
+/// Whether odometry has the cameras about where they are.
+bool agrees(const PlacedSession& session, const OdometryPoses& odometry) {
+  std::vector<double> distances_m, angles_rad;
+  for (std::size_t i = 0; i < odometry.size(); ++i) {
+    if (!odometry[i]) continue;
+    const Eigen::Isometry3d apart = odometry[i]->inverse() * session.T_world_camera[i];
+    distances_m.push_back(apart.translation().norm());
+    angles_rad.push_back(Eigen::AngleAxisd(apart.linear()).angle());
+  }
+  return !distances_m.empty() && median(distances_m) <= 3.0 * kOdometrySigma_m &&
+         median(angles_rad) <= 3.0 * kPriorSigma_rad;
 }
 
 }  // namespace
@@ -57,7 +73,7 @@ PlacedSession placed_session(std::size_t index, std::span<const SessionFrame> fr
 }
 
 PoseGraph session_graph(std::span<const PlacedSession> sessions, std::span<const SessionLink> links,
-                        const SessionGraphOptions& options) {
+                        std::span<const OdometryPoses> odometry, const SessionGraphOptions& options) {
   PoseGraph graph;
   const std::vector<std::size_t> first = first_nodes(sessions);
   for (std::size_t k = 0; k < sessions.size(); ++k) {
@@ -68,10 +84,16 @@ PoseGraph session_graph(std::span<const PlacedSession> sessions, std::span<const
       for (std::size_t step = 1; step <= 2 && i + step < n; ++step) {
         graph.edges.push_back(motion_edge(session, first[k], i, i + step));
       }
-      if (!options.lidar_priors) continue;
-      const double sigma_m = std::max(0.1, session.rmse_m);
-      graph.priors.push_back(
-          {first[k] + i, session.T_world_camera[i], information(sigma_m, 0.5 * kDeg), options.cauchy_width});
+    }
+    if (!options.lidar_priors) continue;
+    const double sigma_m = std::max(0.1, session.rmse_m);
+    const bool with_odometry = !odometry.empty() && agrees(session, odometry[k]);
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto add_prior = [&](const Eigen::Isometry3d& pose, double sigma_prior_m) {
+        graph.priors.push_back({first[k] + i, pose, information(sigma_prior_m, kPriorSigma_rad), options.cauchy_width});
+      };
+      add_prior(session.T_world_camera[i], sigma_m);
+      if (with_odometry && odometry[k][i]) add_prior(*odometry[k][i], kOdometrySigma_m);
     }
   }
   for (const SessionLink& link : links) {

@@ -55,14 +55,21 @@ std::optional<SessionLink> link_sessions(const SessionPredictions& a, const Plac
                                          const LinkOptions& options, std::string& reason);
 
 struct SessionGraphOptions {
-  bool lidar_priors = true;   ///< every frame also stays near where registration has put it
+  bool lidar_priors = true;   ///< every frame also stays near where registration and odometry have put it
   double cauchy_width = 1.0;  ///< of links and priors, standard deviations
 };
 
+/// Where LiDAR-inertial odometry has a session's cameras; none where it has no pose.
+using OdometryPoses = std::vector<std::optional<Eigen::Isometry3d>>;
+
 /// The graph of all frames (PIPELINE, "Global PGO"): one node for each frame of each session, in order; edges between
 /// consecutive and second-next frames, links between sessions, priors. The first node is fixed.
+/// Priors: where registration has put each frame, and, in sessions that agree with it, where LiDAR-inertial odometry
+/// has it (`odometry`, one for each session, or empty). Registration finds a session's scale and direction better than
+/// its poses alone do, and slides along what it matches; where it has moved the cameras of a session by more than 0.3 m
+/// or 1.5 degrees (medians), calibration, clock or depths are off, and odometry would tear the map apart again.
 PoseGraph session_graph(std::span<const PlacedSession> sessions, std::span<const SessionLink> links,
-                        const SessionGraphOptions& options);
+                        std::span<const OdometryPoses> odometry, const SessionGraphOptions& options);
 
 /// The sessions with their nodes' poses.
 std::vector<PlacedSession> with_poses(std::span<const PlacedSession> sessions,
