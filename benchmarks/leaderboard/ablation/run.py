@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """What each stage of cmap_recon is worth: every variant of it on simulated captures with exact truth, and on one of your own.
 
-The columns are those of the paper's Table IV (RMSE, AWD, Chamfer, SCS), of the whole map against the truth, with the true error of the
-scales and of the trajectory. What is done is kept in OUT/results, so that a run that was stopped goes on where it was.
+The columns are those of the paper's Table IV (RMSE, AWD, Chamfer, SCS), of the sessions and of the whole map against the truth, with the
+true error of the scales and of the trajectory. What is done is kept in OUT/results, so that a run that was stopped goes on where it was.
 """
 import argparse
 import bisect
@@ -66,6 +66,9 @@ COLUMNS = {
     "scale_error_max": ("scale error, max", "%", 2),
     "scale_error_median": ("median", "%", 2),
     "rmse": ("RMSE", "m", 3),
+    "session_average_wasserstein": ("AWD of sessions", "m", 3),
+    "session_distance": ("distance of sessions", "m", 3),
+    "session_spatial_consistency": ("SCS of sessions", "1", 3),
     "average_wasserstein": ("AWD", "m", 3),
     "chamfer": ("Chamfer", "m", 3),
     "spatial_consistency": ("SCS", "1", 3),
@@ -156,15 +159,33 @@ def trajectory_rmse_m(truth_path, estimate_path):
     return math.sqrt(statistics.fmean(squares)) if squares else None
 
 
-def map_metrics(capture, map_folder, tools):
-    report_path = map_folder / "evaluation.json"
-    run([tools / "cmap_eval", capture.folder / "truth/map.ply", map_folder / "map.ply", "--metrics", "geometry,distribution",
+def evaluate(capture, map_path, tools):
+    """The metrics of one map against the truth, from cmap_eval's report."""
+    report_path = map_path.with_suffix(".evaluation.json")
+    run([tools / "cmap_eval", capture.folder / "truth/map.ply", map_path, "--metrics", "geometry,distribution",
          "--thresholds", "0.2", "--awd-voxel", capture.awd_voxel_m, "-o", report_path, "--quiet"])
-    metrics = json.loads(report_path.read_text())["metrics"]
+    return json.loads(report_path.read_text())["metrics"]
+
+
+def map_metrics(capture, map_folder, tools):
+    metrics = evaluate(capture, map_folder / "map.ply", tools)
     values = {name: metrics[name]["value"] for name in ("average_wasserstein", "chamfer", "spatial_consistency")}
     values.update({name + "@0.2": 100 * metrics[name]["per_threshold"][0]["value"] for name in ("fitness", "completeness")})
     values["awd_voxels"] = metrics["average_wasserstein"]["n_voxels"]
     return values
+
+
+def session_metrics(capture, map_folder, tools):
+    """Means over the sessions' own maps. Of the Chamfer distance only the way to the truth, which holds more than a session saw."""
+    sessions = [evaluate(capture, path, tools) for path in sorted((map_folder / "sessions").glob("*.ply"))]
+
+    def mean(values):
+        known = [v for v in values if v is not None]
+        return statistics.fmean(known) if known else None
+
+    return {"session_average_wasserstein": mean(m["average_wasserstein"]["value"] for m in sessions),
+            "session_distance": mean(m["chamfer"]["estimate_to_reference"] for m in sessions),
+            "session_spatial_consistency": mean(m["spatial_consistency"]["value"] for m in sessions)}
 
 
 def measure(capture, map_folder, tools):
@@ -173,7 +194,8 @@ def measure(capture, map_folder, tools):
     errors = scale_errors(capture.folder, map_folder)
     rmses = [s["rmse_m"] for s in sessions if not s["dropped"] and s["rmse_m"] is not None]
     return {"scale_error_max": max(errors, default=None), "scale_error_median": statistics.median(errors) if errors else None,
-            "rmse": statistics.fmean(rmses) if rmses else None, **map_metrics(capture, map_folder, tools),
+            "rmse": statistics.fmean(rmses) if rmses else None, **session_metrics(capture, map_folder, tools),
+            **map_metrics(capture, map_folder, tools),
             "trajectory_rmse": trajectory_rmse_m(capture.folder / "truth/trajectory.tum", map_folder / "trajectory.tum"),
             "sessions": sessions}
 
@@ -190,7 +212,7 @@ def result_of(capture, variant, args):
     map_folder = args.output / "maps" / capture.name / variant.replace(" ", "_")
     shutil.rmtree(map_folder, ignore_errors=True)
     try:
-        run([args.tools / "cmap_recon", capture.folder, "-o", map_folder, *arguments, "--quiet"])
+        run([args.tools / "cmap_recon", capture.folder, "-o", map_folder, *arguments, "--session-maps", "--quiet"])
         result = {"key": key, "values": measure(capture, map_folder, args.tools)}
     except RuntimeError as error:
         result = {"key": key, "failed": str(error)}
