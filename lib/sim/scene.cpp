@@ -32,9 +32,21 @@ SurfaceHit surface_hit(const SceneData& data, const SurfacePoint& point, double 
   return hit;
 }
 
-std::uint32_t first_triangle(const SceneData& data, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+/// What a ray meets first.
+struct Met {
+  SurfacePoint point;
+  SurfaceHit hit;
+};
+
+std::optional<Met> first_met(const SceneData& data, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                              double max_distance_m) {
-  return data.caster.first({origin.cast<float>(), direction.cast<float>(), static_cast<float>(max_distance_m)});
+  const Eigen::Vector3d local = origin - data.mesh.origin;
+  const std::uint32_t triangle =
+      data.caster.first({local.cast<float>(), direction.cast<float>(), static_cast<float>(max_distance_m)});
+  if (triangle == RayCaster::kNone) return std::nullopt;
+  const PlaneHit plane = data.meet(triangle, local, direction);
+  const SurfacePoint point{triangle, (local + plane.distance * direction).cast<float>(), plane.normal};
+  return Met{point, surface_hit(data, point, plane.distance, direction)};
 }
 
 }  // namespace
@@ -75,22 +87,14 @@ Scene::Scene(std::shared_ptr<const SceneData> data) : data_(std::move(data)) {}
 
 std::optional<SurfaceHit> Scene::probe(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                                        double max_distance_m) const {
-  const Eigen::Vector3d local = origin - data_->mesh.origin;
-  const std::uint32_t triangle = first_triangle(*data_, local, direction, max_distance_m);
-  if (triangle == RayCaster::kNone) return std::nullopt;
-  const PlaneHit plane = data_->meet(triangle, local, direction);
-  const SurfacePoint point{triangle, (local + plane.distance * direction).cast<float>(), plane.normal};
-  return surface_hit(*data_, point, plane.distance, direction);
+  const auto met = first_met(*data_, origin, direction, max_distance_m);
+  return met ? std::optional(met->hit) : std::nullopt;
 }
 
 std::optional<SceneHit> Scene::cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                                     double max_distance_m) const {
-  const Eigen::Vector3d local = origin - data_->mesh.origin;
-  const std::uint32_t triangle = first_triangle(*data_, local, direction, max_distance_m);
-  if (triangle == RayCaster::kNone) return std::nullopt;
-  const PlaneHit plane = data_->meet(triangle, local, direction);
-  const SurfacePoint point{triangle, (local + plane.distance * direction).cast<float>(), plane.normal};
-  return SceneHit{surface_hit(*data_, point, plane.distance, direction), data_->color(point)};
+  const auto met = first_met(*data_, origin, direction, max_distance_m);
+  return met ? std::optional(SceneHit{met->hit, data_->color(met->point)}) : std::nullopt;
 }
 
 RgbF Scene::sky(const Eigen::Vector3d& direction) const { return sky_color(direction.cast<float>()); }

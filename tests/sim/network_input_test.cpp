@@ -5,23 +5,16 @@
 
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
+#include "sim/sim_testing.hpp"
 
 namespace cmap {
 namespace {
 
-CameraModel camera(int width, int height, double focal_px) {
-  CameraModel c;
-  c.width = width;
-  c.height = height;
-  c.fx = c.fy = focal_px;
-  c.cx = 0.5 * width;
-  c.cy = 0.5 * height;
-  return c;
-}
+using testing::pinhole;
 
 TEST(NetworkCamera, HasTheSizesOfTheRelease) {
   const auto size = [](int w, int h) {
-    const CameraModel c = network_camera(camera(w, h, 1000.0));
+    const CameraModel c = network_camera(pinhole(w, h, 1000.0));
     return std::pair(c.width, c.height);
   };
   EXPECT_EQ(size(2448, 2048), std::pair(518, 434));
@@ -30,11 +23,11 @@ TEST(NetworkCamera, HasTheSizesOfTheRelease) {
   EXPECT_EQ(size(1241, 376), std::pair(518, 154));
   EXPECT_EQ(size(1000, 1000), std::pair(518, 518));
   EXPECT_EQ(size(1000, 500), std::pair(518, 252)) << "18.5 patches: half to even";
-  EXPECT_THROW(network_camera(camera(640, 480, 500), 100), UsageError);
+  EXPECT_THROW(network_camera(pinhole(640, 480, 500), 100), UsageError);
 }
 
 TEST(NetworkCamera, ScalesTheAxesApartAndCropsTallImages) {
-  CameraModel mars = camera(2448, 2048, 1444.43);
+  CameraModel mars = pinhole(2448, 2048, 1444.43);
   mars.cx = 1178.0;
   mars.distortion = {-0.05, 0.12, 0, 0};
   const CameraModel c = network_camera(mars);
@@ -43,7 +36,7 @@ TEST(NetworkCamera, ScalesTheAxesApartAndCropsTallImages) {
   EXPECT_EQ(c.cx, 259.0);
   EXPECT_EQ(c.cy, 217.0);
   EXPECT_TRUE(c.distortion.empty());
-  const CameraModel tall = network_camera(camera(1080, 1920, 900.0));
+  const CameraModel tall = network_camera(pinhole(1080, 1920, 900.0));
   EXPECT_EQ(tall.height, 518);
   EXPECT_DOUBLE_EQ(tall.fy, 900.0 * 924 / 1920) << "scaled as the 924 rows, of which 518 are left";
   EXPECT_EQ(tall.cy, 259.0);
@@ -61,14 +54,14 @@ RgbImage ramp(int width, int height) {
 }
 
 TEST(NetworkImage, OfACameraLikeItIsThePicture) {
-  const CameraModel own = camera(140, 98, 100.0), network = network_camera(own, 140);
+  const CameraModel own = network_camera(pinhole(140, 98, 100.0), 140), network = network_camera(own, 140);
   ASSERT_EQ(network.height, 98);
   const RgbImage picture = ramp(140, 98);
   EXPECT_EQ(network_image(picture, own, network).pixels, picture.pixels);
 }
 
 TEST(NetworkImage, AveragesThePixelsThatItCovers) {
-  const CameraModel own = camera(84, 84, 50.0), network = network_camera(own, 28);
+  const CameraModel own = network_camera(pinhole(84, 84, 50.0), 84), network = network_camera(own, 28);
   RgbImage dots{84, 84, Array<Rgb8>(84 * 84, Rgb8{0, 0, 0})};
   // Pixel (u, v) of the network covers the columns 3u - 1 .. 3u + 1: principal points at w / 2 are at pixel centers.
   dots.pixels[30 * 84 + 30] = {252, 90, 9};
@@ -78,7 +71,7 @@ TEST(NetworkImage, AveragesThePixelsThatItCovers) {
 }
 
 TEST(NetworkImage, UndistortsThePicture) {
-  CameraModel own = camera(120, 90, 80.0);
+  CameraModel own = pinhole(120, 90, 80.0);
   own.distortion = {-0.2, 0.05, 0.0, 0.0};
   const CameraModel network = network_camera(own, 112);
   const RgbImage small = network_image(ramp(120, 90), own, network);
@@ -91,7 +84,7 @@ TEST(NetworkImage, UndistortsThePicture) {
 }
 
 TEST(NetworkImage, IsBlackWhereThePictureEndsAndSaysWhatDoesNotFit) {
-  CameraModel own = camera(120, 90, 80.0);
+  CameraModel own = pinhole(120, 90, 80.0);
   own.cx = 20.0;
   const CameraModel network = network_camera(own, 112);
   const RgbImage small = network_image(ramp(120, 90), own, network);
@@ -101,7 +94,7 @@ TEST(NetworkImage, IsBlackWhereThePictureEndsAndSaysWhatDoesNotFit) {
 }
 
 TEST(NetworkImage, IsTheSameForAnyNumberOfThreads) {
-  const CameraModel own = camera(640, 480, 400.0), network = network_camera(own, 518);
+  const CameraModel own = pinhole(640, 480, 400.0), network = network_camera(own, 518);
   const RgbImage both = network_image(ramp(640, 480), own, network);
   const ThreadLimit one(1);
   EXPECT_EQ(network_image(ramp(640, 480), own, network).pixels, both.pixels);

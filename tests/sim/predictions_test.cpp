@@ -8,21 +8,13 @@
 #include "cmap/core/parallel.hpp"
 #include "cmap/sim/network_input.hpp"
 #include "sim/sensor_testing.hpp"
+#include "sim/sim_testing.hpp"
 
 namespace cmap {
 namespace {
 
+using testing::pinhole;
 using testing::rms;
-
-CameraModel camera(int width, int height, double focal_px) {
-  CameraModel c;
-  c.width = width;
-  c.height = height;
-  c.fx = c.fy = focal_px;
-  c.cx = 0.5 * width;
-  c.cy = 0.5 * height;
-  return c;
-}
 
 TEST(CutSessions, ShareTheirOverlap) {
   const auto sessions = cut_sessions(51, 17, 5);
@@ -70,7 +62,7 @@ struct Drive {
 
 Drive drive(const Scene& scene, std::size_t n) {
   Drive d;
-  d.network = network_camera(camera(640, 470, 400.0), 126);
+  d.network = network_camera(pinhole(640, 470, 400.0), 126);
   PathOptions options;
   options.rest_s = 0.5;
   options.sway_position_m = 0.1;
