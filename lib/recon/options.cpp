@@ -46,6 +46,7 @@ void describe(Fields& f, FieldsOf<Fields, ReconstructionOptions>& o) {
   f.field("pose_graph", o.pose_graph);
   f.field("lidar_priors", o.lidar_priors);
   f.field("fusion_voxel_m", o.fusion_voxel_m, kPositive);
+  f.field("fusion_max_range_m", o.fusion_max_range_m, kNotNegative);
   f.field("fusion_doubt", o.fusion_doubt, kFraction);
 }
 

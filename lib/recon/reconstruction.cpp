@@ -140,6 +140,21 @@ void add_sketch(const FramePoints& points, std::size_t frame, std::size_t n_fram
   }
 }
 
+void leave_out_beyond(double max_range, FramePoints& points) {
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < points.positions.size(); ++i) {
+    if (points.positions[i].cast<double>().norm() > max_range) continue;
+    points.positions[n] = points.positions[i];
+    points.colors[n] = points.colors[i];
+    points.confidence[n] = points.confidence[i];
+    points.pixel[n++] = points.pixel[i];
+  }
+  points.positions.resize(n);
+  points.colors.resize(n);
+  points.confidence.resize(n);
+  points.pixel.resize(n);
+}
+
 void fuse(const Capture& capture, const ReconstructionOptions& options, const ReconstructionRun& run,
           const std::vector<SessionState>& sessions, Reconstruction& result) {
   MapFusion fusion(options.fusion_voxel_m);
@@ -155,7 +170,8 @@ void fuse(const Capture& capture, const ReconstructionOptions& options, const Re
     std::optional<MapFusion> alone;
     if (run.session_map) alone.emplace(options.fusion_voxel_m);
     for (std::size_t i = 0; i < session.frame_count(); ++i) {
-      const FramePoints points = frame_points(session, i, state.min_confidence, options.points);
+      FramePoints points = frame_points(session, i, state.min_confidence, options.points);
+      if (options.fusion_max_range_m > 0.0) leave_out_beyond(options.fusion_max_range_m / placed.scale, points);
       fusion.add(points, placed.T_world_camera[i], placed.scale);
       if (alone) alone->add(points, placed.T_world_camera[i], placed.scale);
       add_sketch(points, i, session.frame_count(), sketch);

@@ -242,6 +242,18 @@ class Recon(unittest.TestCase):
 
     # Inputs that are missing.
 
+    def test_max_range_leaves_out_what_is_far_from_all_cameras(self):
+        path = np.loadtxt(self.capture / "lio.tum")[:, 1:4]
+
+        def farthest_m(*arguments):
+            self.recon(*arguments)
+            points = read_positions(self.output / "map.ply")
+            return max(np.linalg.norm(path - p, axis=1).min() for p in points)
+
+        self.assertGreater(farthest_m(), 30)
+        # A camera sits within a meter of the body, the map is within half a meter of where it should be.
+        self.assertLess(farthest_m("--set", "fusion_max_range_m=8"), 9.5)
+
     def test_session_maps_are_the_parts_of_the_map(self):
         voxel_m = 0.1
         self.recon("--session-maps", "--set", "fusion_doubt=0", "--set", f"fusion_voxel_m={voxel_m}")

@@ -30,6 +30,7 @@ struct ReconstructionOptions {
   bool pose_graph = true;  ///< false: sessions stay where registration has put them
   bool lidar_priors = true;
   double fusion_voxel_m = 0.05;
+  double fusion_max_range_m = 0.0;  ///< points farther from their camera are left out of the map; 0: none
   double fusion_doubt = 0.5;  ///< voxels less sure than this share of what lies around them are left out; see MapFusion
 };
 
