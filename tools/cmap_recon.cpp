@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "cmap/eval/protocol.hpp"
@@ -146,12 +147,30 @@ void check_arguments(const Arguments& a) {
   check_figure(a);
 }
 
-void make_output_folders(const Arguments& a) {
+fs::path session_map_path(const Arguments& a, const std::string& session) {
+  return fs::path(a.output) / "sessions" / (session + ".ply");
+}
+
+void make_output_folders(const Arguments& a, const cmap::Capture& capture) {
   const fs::path folder(a.output);
   make_folder(folder);
-  if (a.session_maps) make_folder(folder / "sessions");
+  if (a.session_maps) {
+    make_folder(folder / "sessions");
+    for (const fs::path& session : capture.sessions) {
+      cmap::require_writable(session_map_path(a, session.filename().string()));
+    }
+  }
   for (const char* name : {"map.ply", "trajectory.tum", "sessions.json", "report.json"}) {
     cmap::require_writable(folder / name);
+  }
+}
+
+/// Of an earlier run, of sessions that this one has no map of.
+void remove_stale_session_maps(const Arguments& a, const cmap::Capture& capture, const std::vector<fs::path>& written) {
+  for (const fs::path& session : capture.sessions) {
+    const fs::path path = session_map_path(a, session.filename().string());
+    std::error_code ignored;
+    if (std::ranges::find(written, path) == written.end()) fs::remove(path, ignored);
   }
 }
 
@@ -166,7 +185,7 @@ ExitCode run(const CLI::App& app, const Arguments& a, const std::string& command
   std::optional<cmap::PointCloudFile> reference;
   if (!a.reference.empty()) reference = cmap::read_point_cloud(a.reference, {.sha256 = true});
   const cmap::Capture capture = cmap::open_capture(a.capture);
-  make_output_folders(a);
+  make_output_folders(a, capture);
   cmap::ProgressBar progress(!a.common.quiet);
   cmap::OutputFiles files;
   cmap::ReconstructionRun how;
@@ -175,15 +194,17 @@ ExitCode run(const CLI::App& app, const Arguments& a, const std::string& command
   how.stages = fs::path(a.output) / "stages";
   how.resume = a.resume;
   how.progress = [&](std::string_view stage, double done) { progress.update(stage, done); };
+  std::vector<fs::path> session_maps;
   if (a.session_maps) {
     how.session_map = [&](const std::string& session, const cmap::PointCloud& map) {
-      files.add(fs::path(a.output) / "sessions" / (session + ".ply"),
-                [&](cmap::OutputFile& file) { cmap::write_ply(file, map); });
+      session_maps.push_back(session_map_path(a, session));
+      files.add(session_maps.back(), [&](cmap::OutputFile& file) { cmap::write_ply(file, map); });
     };
   }
   const cmap::Reconstruction result = cmap::reconstruct(capture, options, how);
   for (const cmap::Warning& warning : result.warnings) fmt::print(stderr, "warning: {}\n", warning.message);
   deliver(a, result, options, command, files);
+  if (a.session_maps) remove_stale_session_maps(a, capture, session_maps);
   if (reference) evaluate_map(a, std::move(*reference), command);
   return ExitCode::kDone;
 }

@@ -107,7 +107,8 @@ void OutputFiles::commit() {
 }
 
 void require_writable(const fs::path& path) {
-  if (fs::is_directory(path)) fail(path, EISDIR);
+  std::error_code ignored;  // what else is wrong with the name is told below
+  if (fs::is_directory(path, ignored)) fail(path, EISDIR);
   if (!path.empty() && !is_written_directly(path)) const OutputFile created_and_removed(path);
 }
 

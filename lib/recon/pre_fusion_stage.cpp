@@ -12,10 +12,6 @@
 namespace cmap {
 namespace {
 
-CameraMount mount_of(const Capture& capture) {
-  return {capture.calibration.T_imu_lidar, capture.calibration.T_lidar_camera};
-}
-
 std::span<const float> plane(const Array<float>& values, std::size_t frame, std::size_t size) {
   return std::span<const float>(values).subspan(frame * size, size);
 }

@@ -89,8 +89,8 @@ void require_enough(const std::vector<SessionState>& sessions) {
 void optimize_poses(const Capture& capture, const ReconstructionOptions& options, Reconstruction& result) {
   std::vector<OdometryPoses> odometry;
   for (const PlacedSession& session : result.poses) {
-    odometry.push_back(camera_poses(capture.lio, {capture.calibration.T_imu_lidar, capture.calibration.T_lidar_camera},
-                                    session.time_s, options.prefusion.pairing, options.prefusion.max_gap_s));
+    odometry.push_back(camera_poses(capture.lio, mount_of(capture), session.time_s, options.prefusion.pairing,
+                                    options.prefusion.max_gap_s));
   }
   const PoseGraph graph = session_graph(result.poses, result.links, odometry, {.lidar_priors = options.lidar_priors});
   const PoseGraphResult found = optimize(graph);
@@ -176,7 +176,10 @@ void fuse(const Capture& capture, const ReconstructionOptions& options, const Re
       if (alone) alone->add(points, placed.T_world_camera[i], placed.scale);
       add_sketch(points, i, session.frame_count(), sketch);
     }
-    if (alone) run.session_map(state.outcome.name, alone->finish(options.fusion_doubt));
+    if (alone && alone->size() > 0) run.session_map(state.outcome.name, alone->finish(options.fusion_doubt));
+  }
+  if (fusion.size() == 0) {
+    throw UnsupportedError(fmt::format("no point is within fusion_max_range_m, {:g} m", options.fusion_max_range_m));
   }
   result.points_fused = fusion.points_added();
   result.map = fusion.finish(options.fusion_doubt);

@@ -57,8 +57,8 @@ Similarity motion_of(const PixelPairs& pairs, double& median_m) {
   for (int step = 0; step < kSteps; ++step) {
     motion = umeyama(pairs.b, pairs.a, ScaleModel::rigid(), weights);
     for (std::size_t i = 0; i < pairs.a.size(); ++i) residuals[i] = (motion * pairs.b[i] - pairs.a[i]).norm();
-    std::vector<double> sorted = residuals;
-    median_m = median(sorted);
+    std::vector<double> values = residuals;
+    median_m = median(values);
     const double width_m = std::max(median_m, 1e-6);
     for (std::size_t i = 0; i < weights.size(); ++i) {
       weights[i] = robust_weight(RobustKernel::kCauchy, residuals[i], width_m);

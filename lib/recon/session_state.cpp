@@ -116,6 +116,10 @@ void read_state(const Json& json, std::vector<SessionState>& sessions, std::vect
   }
 }
 
+CameraMount mount_of(const Capture& capture) {
+  return {capture.calibration.T_imu_lidar, capture.calibration.T_lidar_camera};
+}
+
 SessionPredictions read_corrected(const Capture& capture, const SessionState& state) {
   SessionPredictions session = read_usable_predictions(capture.sessions[state.outcome.index]);
   if (state.center_factor == 1.0) return session;

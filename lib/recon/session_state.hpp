@@ -28,6 +28,9 @@ void read_state(const nlohmann::ordered_json& json, std::vector<SessionState>& s
 /// As sessions.json has it.
 nlohmann::ordered_json written(const SessionOutcome& outcome);
 
+/// How the capture's camera sits on the body.
+CameraMount mount_of(const Capture& capture);
+
 /// A session as the stages after pre-fusion see it, its camera centers corrected.
 SessionPredictions read_corrected(const Capture& capture, const SessionState& state);
 

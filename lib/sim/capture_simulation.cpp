@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
@@ -172,7 +173,11 @@ class CaptureRun {
     NetworkFrame frame;
     frame.frame = {0, stated_time(i), image_names_[i], camera.width, camera.height};
     frame.T_world_camera = T_world_camera(image_times_[i]);
-    frame.view = {network_image(image, camera, network), render_depth(scene_, network, frame.T_world_camera)};
+    NetworkImage seen = network_image(image, camera, network);
+    frame.view = {std::move(seen.image), render_depth(scene_, network, frame.T_world_camera)};
+    for (std::size_t pixel = 0; pixel < seen.is_shown.size(); ++pixel) {
+      if (seen.is_shown[pixel] == 0) frame.view.depth_m[pixel] = std::numeric_limits<float>::infinity();
+    }
     return frame;
   }
 

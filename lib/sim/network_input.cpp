@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "cmap/core/color.hpp"
 #include "cmap/core/error.hpp"
@@ -25,12 +26,15 @@ Eigen::Vector3f interpolated(const RgbImage& image, const Eigen::Vector2d& pixel
   return (1.0F - ty) * ((1.0F - tx) * at(x0, y0) + tx * at(x1, y0)) + ty * ((1.0F - tx) * at(x0, y1) + tx * at(x1, y1));
 }
 
-/// What the picture shows at a pixel of the network's.
-Eigen::Vector3f seen_at(const RgbImage& image, const CameraModel& camera, const CameraModel& network, double u,
-                        double v) {
+/// What the picture shows at a pixel of the network's; none outside.
+std::optional<Eigen::Vector3f> seen_at(const RgbImage& image, const CameraModel& camera, const CameraModel& network,
+                                       double u, double v) {
   const Eigen::Vector3d ray((u - network.cx) / network.fx, (v - network.cy) / network.fy, 1.0);
   const auto pixel = project(camera, ray);
-  if (!pixel || !is_inside(camera, *pixel)) return Eigen::Vector3f::Zero();
+  if (!pixel) return std::nullopt;
+  // Where the network's pixels end with the picture's, rounding must not decide.
+  const Eigen::Vector2d center(0.5 * (camera.width - 1), 0.5 * (camera.height - 1));
+  if (!is_inside(camera, *pixel + 1e-9 * (center - *pixel))) return std::nullopt;
   return interpolated(image, *pixel);
 }
 
@@ -54,26 +58,33 @@ CameraModel network_camera(const CameraModel& camera, int width_px) {
   return network;
 }
 
-RgbImage network_image(const RgbImage& image, const CameraModel& camera, const CameraModel& network) {
+NetworkImage network_image(const RgbImage& image, const CameraModel& camera, const CameraModel& network) {
   if (image.width != camera.width || image.height != camera.height) {
     throw UsageError(fmt::format("a picture of {} x {} pixels from a camera of {} x {}", image.width, image.height,
                                  camera.width, camera.height));
   }
-  // Enough that no pixel of the picture is skipped.
+  // Samples as dense as the picture's pixels are near its center.
   const int s = static_cast<int>(std::ceil(std::max(camera.fx / network.fx, camera.fy / network.fy) - 1e-9));
   const auto width = static_cast<std::size_t>(network.width), height = static_cast<std::size_t>(network.height);
-  RgbImage small{network.width, network.height, Array<Rgb8>(width * height)};
+  NetworkImage result{{network.width, network.height, Array<Rgb8>(width * height)},
+                      Array<std::uint8_t>(width * height)};
   parallel_chunks(height, 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin * width; i < end * width; ++i) {
       Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+      int n = 0;
       for (int k = 0; k < s * s; ++k) {
-        sum += seen_at(image, camera, network, static_cast<double>(i % width) + (k % s + 0.5) / s - 0.5,
-                       static_cast<double>(i / width) + (k / s + 0.5) / s - 0.5);
+        const double u = static_cast<double>(i % width) + (k % s + 0.5) / s - 0.5;
+        const double v = static_cast<double>(i / width) + (k / s + 0.5) / s - 0.5;
+        const auto color = seen_at(image, camera, network, u, v);
+        if (!color) continue;
+        sum += *color;
+        ++n;
       }
-      small.pixels[i] = to_rgb8(sum / static_cast<float>(s * s));
+      result.image.pixels[i] = n > 0 ? to_rgb8(sum / static_cast<float>(n)) : Rgb8{0, 0, 0};
+      result.is_shown[i] = n > 0 ? 1 : 0;
     }
   });
-  return small;
+  return result;
 }
 
 }  // namespace cmap

@@ -167,6 +167,31 @@ TEST(SimulateCapture, TheTrueMapIsWhatPicturesSaw) {
       << "but for rays that graze an edge";
 }
 
+/// Sessions are of every second picture; the last one ends where the pictures do.
+TEST(SimulateCapture, CutsSessionsOfEveryNthPicture) {
+  const TempFolder folder;
+  CaptureOptions o = tiny(false);
+  o.camera.rate_hz = 4.0;
+  o.predictions.image_stride = 2;
+  o.predictions.session_length = 5;
+  o.predictions.session_overlap = 2;
+  simulate_capture(o, folder.path() / "capture");
+  const Capture capture = open_capture(folder.path() / "capture");
+  const auto ranges = cut_sessions((capture.images.size() + 1) / 2, 5, 2);
+  ASSERT_GE(ranges.size(), 2U);
+  ASSERT_EQ(capture.sessions.size(), ranges.size());
+  for (std::size_t k = 0; k < ranges.size(); ++k) {
+    const SessionPredictions session = read_session_predictions(capture.sessions[k]);
+    ASSERT_EQ(session.frame_count(), ranges[k].count);
+    for (std::size_t f = 0; f < ranges[k].count; ++f) {
+      EXPECT_EQ(session.frames[f].time_s, capture.images[2 * (ranges[k].first + f)].time_s);
+    }
+  }
+  o.predictions.session_length = 1000;
+  simulate_capture(o, folder.path() / "one");
+  EXPECT_EQ(open_capture(folder.path() / "one").sessions.size(), 1U);
+}
+
 TEST(SimulateCapture, SameBytesForAnyNumberOfThreads) {
   const TempFolder folder;
   CaptureOptions options = tiny(true);

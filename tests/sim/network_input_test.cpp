@@ -57,7 +57,7 @@ TEST(NetworkImage, OfACameraLikeItIsThePicture) {
   const CameraModel own = network_camera(pinhole(140, 98, 100.0), 140), network = network_camera(own, 140);
   ASSERT_EQ(network.height, 98);
   const RgbImage picture = ramp(140, 98);
-  EXPECT_EQ(network_image(picture, own, network).pixels, picture.pixels);
+  EXPECT_EQ(network_image(picture, own, network).image.pixels, picture.pixels);
 }
 
 TEST(NetworkImage, AveragesThePixelsThatItCovers) {
@@ -65,16 +65,28 @@ TEST(NetworkImage, AveragesThePixelsThatItCovers) {
   RgbImage dots{84, 84, Array<Rgb8>(84 * 84, Rgb8{0, 0, 0})};
   // Pixel (u, v) of the network covers the columns 3u - 1 .. 3u + 1: principal points at w / 2 are at pixel centers.
   dots.pixels[30 * 84 + 30] = {252, 90, 9};
-  const RgbImage small = network_image(dots, own, network);
+  const RgbImage small = network_image(dots, own, network).image;
   EXPECT_EQ(small.at(10, 10), (Rgb8{28, 10, 1})) << "a ninth of the one pixel in it";
   EXPECT_EQ(small.at(11, 10), (Rgb8{0, 0, 0}));
+}
+
+/// Of pixels at the edge, only a part lies on the picture: they are no darker for it.
+TEST(NetworkImage, OfOneColorIsOfThatColorToItsEdges) {
+  for (const int width : {320, 252, 1036, 126, 84}) {
+    const CameraModel own = pinhole(width, 3 * width / 4, 0.7 * width), network = network_camera(own, 126);
+    RgbImage gray{own.width, own.height, {}};
+    gray.pixels.assign(static_cast<std::size_t>(own.width) * static_cast<std::size_t>(own.height), Rgb8{90, 100, 110});
+    const NetworkImage small = network_image(gray, own, network);
+    EXPECT_THAT(small.image.pixels, ::testing::Each(Rgb8{90, 100, 110})) << width;
+    EXPECT_THAT(small.is_shown, ::testing::Each(1)) << width;
+  }
 }
 
 TEST(NetworkImage, UndistortsThePicture) {
   CameraModel own = pinhole(120, 90, 80.0);
   own.distortion = {-0.2, 0.05, 0.0, 0.0};
   const CameraModel network = network_camera(own, 112);
-  const RgbImage small = network_image(ramp(120, 90), own, network);
+  const RgbImage small = network_image(ramp(120, 90), own, network).image;
   for (const auto& [u, v] : {std::pair(56, 42), std::pair(10, 40), std::pair(100, 70)}) {
     const Eigen::Vector3d ray((u - network.cx) / network.fx, (v - network.cy) / network.fy, 1.0);
     const Eigen::Vector2d at = project(own, ray).value();
@@ -87,17 +99,19 @@ TEST(NetworkImage, IsBlackWhereThePictureEndsAndSaysWhatDoesNotFit) {
   CameraModel own = pinhole(120, 90, 80.0);
   own.cx = 20.0;
   const CameraModel network = network_camera(own, 112);
-  const RgbImage small = network_image(ramp(120, 90), own, network);
-  EXPECT_EQ(small.at(2, 42), (Rgb8{0, 0, 0})) << "the picture's principal point is far left";
-  EXPECT_EQ(small.at(100, 42)[2], 7);
+  const NetworkImage small = network_image(ramp(120, 90), own, network);
+  EXPECT_EQ(small.image.at(2, 42), (Rgb8{0, 0, 0})) << "the picture's principal point is far left";
+  EXPECT_EQ(small.is_shown[42 * 112 + 2], 0);
+  EXPECT_EQ(small.image.at(100, 42)[2], 7);
+  EXPECT_EQ(small.is_shown[42 * 112 + 100], 1);
   EXPECT_THROW(network_image(ramp(90, 120), own, network), UsageError);
 }
 
 TEST(NetworkImage, IsTheSameForAnyNumberOfThreads) {
   const CameraModel own = pinhole(640, 480, 400.0), network = network_camera(own, 518);
-  const RgbImage both = network_image(ramp(640, 480), own, network);
+  const RgbImage both = network_image(ramp(640, 480), own, network).image;
   const ThreadLimit one(1);
-  EXPECT_EQ(network_image(ramp(640, 480), own, network).pixels, both.pixels);
+  EXPECT_EQ(network_image(ramp(640, 480), own, network).image.pixels, both.pixels);
 }
 
 }  // namespace

@@ -87,5 +87,42 @@ TEST(SeenSurface, IsWhatIsInViewAndNotHidden) {
   EXPECT_EQ(0U, seen_surface(scene, camera, {}, {}).size());
 }
 
+/// Against every point and view by itself, with the scene's own single rays. Some views are out of reach.
+TEST(SeenSurface, IsWhatSingleRaysFindFromAnyOfManyViews) {
+  const Scene& scene = testing::town();
+  const CameraModel camera = testing::pinhole(160, 120, 110.0);
+  constexpr double kReach_m = 25.0;
+  std::vector<Eigen::Isometry3d> poses;
+  for (int i = 0; i < 7; ++i) poses.push_back(testing::looking({-60.0 + 12.0 * i, -30.0, 1.6}, {1, 0.3 * (i % 3), 0}));
+  const PointCloud seen =
+      seen_surface(scene, camera, poses, {.points_per_m2 = 0.5, .max_distance_m = kReach_m, .seed = 4});
+  const PointCloud all = sample_surface(scene, 0.5, 4);
+  std::size_t next = 0, n_seen = 0, n_doubtful = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const bool found = next < seen.size() && seen.positions[next] == all.positions[i];
+    if (found) ++next;
+    bool expected = false, doubtful = false;
+    for (const Eigen::Isometry3d& pose : poses) {
+      const Eigen::Vector3d ray = all.world(i) - pose.translation();
+      const auto pixel = project(camera, pose.inverse() * all.world(i));
+      if (ray.norm() > kReach_m || !pixel || !is_inside(camera, *pixel)) continue;
+      const auto hit = scene.probe(pose.translation(), ray.normalized(), kReach_m + 1.0);
+      // What lies between must end 1 cm before the point; within a millimeter of that, floats decide.
+      const double gap = hit ? ray.norm() - hit->distance_m : 0.0;
+      expected = expected || gap < 0.01;
+      doubtful = doubtful || std::abs(gap - 0.01) < 1e-3;
+    }
+    if (doubtful) {
+      ++n_doubtful;
+      continue;
+    }
+    EXPECT_EQ(found, expected) << "point " << i;
+    n_seen += expected ? 1 : 0;
+  }
+  EXPECT_EQ(next, seen.size()) << "in the order of sample_surface()";
+  EXPECT_GT(n_seen, 200U);
+  EXPECT_LT(n_doubtful, n_seen / 20);
+}
+
 }  // namespace
 }  // namespace cmap

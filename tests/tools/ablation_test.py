@@ -52,6 +52,10 @@ class Ablation(unittest.TestCase):
             self.assertLess(float(row["scale_error_max"]), 20)
             self.assertLess(float(row["trajectory_rmse"]), 1)
             self.assertGreater(float(row["completeness@0.2"]), 10)
+            self.assertGreater(float(row["session_average_wasserstein"]), 0)
+            self.assertGreater(float(row["session_spatial_consistency"]), 0)
+            self.assertLess(0, float(row["session_distance"]))
+            self.assertLess(float(row["session_distance"]), 1)
         self.assertNotEqual(rows[0]["rmse"], rows[1]["rmse"])
         kept = self.folder / "out/results/street/robust.json"
         result = json.loads(kept.read_text())

@@ -240,8 +240,6 @@ class Recon(unittest.TestCase):
         for name, scale in truth.items():
             self.assertLess(abs(found[name]["scale"] / scale - 1.0), 0.02, name)
 
-    # Inputs that are missing.
-
     def test_max_range_leaves_out_what_is_far_from_all_cameras(self):
         path = np.loadtxt(self.capture / "lio.tum")[:, 1:4]
 
@@ -253,6 +251,9 @@ class Recon(unittest.TestCase):
         self.assertGreater(farthest_m(), 30)
         # A camera sits within a meter of the body, the map is within half a meter of where it should be.
         self.assertLess(farthest_m("--set", "fusion_max_range_m=8"), 9.5)
+
+    def test_no_point_within_the_range_is_no_map(self):
+        self.refused(UNSUPPORTED, "fusion_max_range_m, 0.01 m", arguments=("--set", "fusion_max_range_m=0.01"))
 
     def test_session_maps_are_the_parts_of_the_map(self):
         voxel_m = 0.1
@@ -266,7 +267,16 @@ class Recon(unittest.TestCase):
         self.assertLess(len(whole ^ set.union(*voxels.values())), 1e-3 * len(whole))
         for part in voxels.values():
             self.assertLess(len(part), 0.9 * len(whole))
+        self.recon("--session-maps", "--only-session", "1")
+        self.assertEqual([path.stem for path in (self.output / "sessions").iterdir()], ["session_0001"])
         self.recon("--session-maps", "--stop-after", "registration", code=USAGE)
+
+    def test_session_map_that_cannot_be_written(self):
+        (self.output / "sessions" / "session_0002.ply").mkdir(parents=True)
+        self.refused(USAGE, "session_0002.ply: cannot be written: Is a directory", arguments=("--session-maps",))
+        self.assertFalse((self.output / "stages").exists(), "said before anything is done")
+
+    # Inputs that are missing.
 
     def test_stages_without_inputs(self):
         for missing, message in (("predictions", "predictions: no sessions"), ("lio.tum", "lio.tum: missing"),

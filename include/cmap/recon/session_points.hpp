@@ -9,7 +9,6 @@
 
 namespace cmap {
 
-/// Which of a session's pixels become points.
 /// Which of a session's pixels are points. First the floor: sky has confidence 1, and must not use up the share.
 struct ConfidenceCut {
   double floor = 1.5;         ///< pixels below this are dropped,

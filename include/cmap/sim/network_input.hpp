@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+
+#include "cmap/core/array.hpp"
 #include "cmap/core/camera_model.hpp"
 #include "cmap/io/image_file.hpp"
 
@@ -11,9 +14,15 @@ namespace cmap {
 /// W is no positive multiple of 14.
 CameraModel network_camera(const CameraModel& camera, int width_px = 518);
 
-/// A camera's picture as network_camera() sees it: each pixel the mean of what the picture shows over the pixel's area,
-/// interpolated between the picture's pixels; black where the picture shows nothing. Rows run in parallel; the same for
+/// A picture as the network gets it.
+struct NetworkImage {
+  RgbImage image;
+  Array<std::uint8_t> is_shown;  ///< by pixel; 0: the camera's picture ends before
+};
+
+/// A camera's picture as network_camera() sees it: each pixel the mean of what the picture shows of the pixel's area,
+/// interpolated between the picture's pixels; black where it shows nothing of it. Rows run in parallel; the same for
 /// any number of threads. Throws UsageError for a picture that is not of the camera's size.
-RgbImage network_image(const RgbImage& image, const CameraModel& camera, const CameraModel& network);
+NetworkImage network_image(const RgbImage& image, const CameraModel& camera, const CameraModel& network);
 
 }  // namespace cmap

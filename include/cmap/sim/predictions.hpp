@@ -65,7 +65,7 @@ std::vector<SessionRange> cut_sessions(std::size_t frames, int length, int overl
 struct NetworkFrame {
   PredictionFrame frame;  ///< `index` is overwritten
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  CameraView view;  ///< network_image() of the picture, and the depth through network_camera()
+  CameraView view;  ///< network_image(), and the depth of what it shows
 };
 
 struct SimulatedSession {
