@@ -16,7 +16,7 @@ PROGRAM = Path(os.environ["CMAP_SOURCE_DIR"]) / "benchmarks/leaderboard/ablation
 
 # A few seconds of a small street, two sessions.
 QUICK = ["small_town", "--set", "route.length_m=12", "--set", "scene.block_x_m=32", "--set", "scene.block_y_m=32",
-         "--set", "truth.map_points_per_m2=5", "--set", "camera.width_px=160", "--set", "camera.height_px=120",
+         "--set", "truth.map_points_per_m2=40", "--set", "camera.width_px=160", "--set", "camera.height_px=120",
          "--set", "camera.focal_px=110", "--set", "predictions.width_px=70", "--set", "predictions.session_length=5"]
 
 
