@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cmap/eval/protocol.hpp"
+#include "cmap/io/output_folder.hpp"
 #include "cmap/io/point_cloud_file.hpp"
 #include "cmap/recon/reconstruction_report.hpp"
 #include "cmap/report/figure_module.hpp"
@@ -129,12 +130,6 @@ void deliver(const Arguments& a, const cmap::Reconstruction& r, const cmap::Reco
   files.commit();
 }
 
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw cmap::UsageError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
-}
-
 void check_arguments(const Arguments& a) {
   if (a.capture.empty() || a.output.empty()) throw cmap::UsageError("CAPTURE and --output are required");
   for (const auto& [given, option] :
@@ -153,9 +148,9 @@ fs::path session_map_path(const Arguments& a, const std::string& session) {
 
 void make_output_folders(const Arguments& a, const cmap::Capture& capture) {
   const fs::path folder(a.output);
-  make_folder(folder);
+  cmap::make_folder(folder);
   if (a.session_maps) {
-    make_folder(folder / "sessions");
+    cmap::make_folder(folder / "sessions");
     for (const fs::path& session : capture.sessions) {
       cmap::require_writable(session_map_path(a, session.filename().string()));
     }

@@ -16,6 +16,12 @@ namespace {
 
 }  // namespace
 
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw UsageError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+}
+
 OutputFolder::OutputFolder(fs::path path) {
   path_ = path.has_filename() ? std::move(path) : path.parent_path();  // "name/" is "name"
   fs::path partial = path_;

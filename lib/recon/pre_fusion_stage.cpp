@@ -56,8 +56,7 @@ ReadSession read_session(const Capture& capture, std::size_t index, const Recons
     for (const Warning& warning : session.predictions->warnings) outcome.flags.push_back(warning.message);
     session.frames = frames_of(*session.predictions);
     session.state.min_confidence = confidence_threshold(*session.predictions, options.confidence, options.points);
-    const auto poses = camera_poses(capture.lio, mount_of(capture), times_of(*session.predictions),
-                                    options.prefusion.pairing, options.prefusion.max_gap_s);
+    const OdometryPoses poses = odometry_poses(capture, times_of(*session.predictions), options.prefusion);
     const auto n_placed = std::ranges::count_if(poses, [](const auto& pose) { return pose.has_value(); });
     if (n_placed == 0) throw UnsupportedError("no frame has a LiDAR-inertial pose at its time");
     if (n_placed < static_cast<std::ptrdiff_t>(poses.size())) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <limits>
 #include <map>
 #include <stdexcept>
 
@@ -89,8 +90,7 @@ void require_enough(const std::vector<SessionState>& sessions) {
 void optimize_poses(const Capture& capture, const ReconstructionOptions& options, Reconstruction& result) {
   std::vector<OdometryPoses> odometry;
   for (const PlacedSession& session : result.poses) {
-    odometry.push_back(camera_poses(capture.lio, mount_of(capture), session.time_s, options.prefusion.pairing,
-                                    options.prefusion.max_gap_s));
+    odometry.push_back(odometry_poses(capture, session.time_s, options.prefusion));
   }
   const PoseGraph graph = session_graph(result.poses, result.links, odometry, {.lidar_priors = options.lidar_priors});
   const PoseGraphResult found = optimize(graph);
@@ -140,21 +140,6 @@ void add_sketch(const FramePoints& points, std::size_t frame, std::size_t n_fram
   }
 }
 
-void leave_out_beyond(double max_range, FramePoints& points) {
-  std::size_t n = 0;
-  for (std::size_t i = 0; i < points.positions.size(); ++i) {
-    if (points.positions[i].cast<double>().norm() > max_range) continue;
-    points.positions[n] = points.positions[i];
-    points.colors[n] = points.colors[i];
-    points.confidence[n] = points.confidence[i];
-    points.pixel[n++] = points.pixel[i];
-  }
-  points.positions.resize(n);
-  points.colors.resize(n);
-  points.confidence.resize(n);
-  points.pixel.resize(n);
-}
-
 void fuse(const Capture& capture, const ReconstructionOptions& options, const ReconstructionRun& run,
           const std::vector<SessionState>& sessions, Reconstruction& result) {
   MapFusion fusion(options.fusion_voxel_m);
@@ -167,11 +152,12 @@ void fuse(const Capture& capture, const ReconstructionOptions& options, const Re
     const PlacedSession& placed = result.poses[k++];
     const SessionPredictions session = read_corrected(capture, state);
     SessionSketch& sketch = result.sketches.emplace_back();
+    const double max_range = options.fusion_max_range_m > 0.0 ? options.fusion_max_range_m / placed.scale
+                                                              : std::numeric_limits<double>::infinity();
     std::optional<MapFusion> alone;
     if (run.session_map) alone.emplace(options.fusion_voxel_m);
     for (std::size_t i = 0; i < session.frame_count(); ++i) {
-      FramePoints points = frame_points(session, i, state.min_confidence, options.points);
-      if (options.fusion_max_range_m > 0.0) leave_out_beyond(options.fusion_max_range_m / placed.scale, points);
+      const FramePoints points = frame_points(session, i, state.min_confidence, options.points, max_range);
       fusion.add(points, placed.T_world_camera[i], placed.scale);
       if (alone) alone->add(points, placed.T_world_camera[i], placed.scale);
       add_sketch(points, i, session.frame_count(), sketch);

@@ -56,14 +56,16 @@ double confidence_threshold(const SessionPredictions& session, const ConfidenceC
 }
 
 FramePoints frame_points(const SessionPredictions& session, std::size_t frame, double min_confidence,
-                         PointSource source) {
+                         PointSource source, double max_range) {
   const Array<float>& confidence = confidence_of(session, source);
   const std::size_t first = frame * session.pixels_per_frame();
   FramePoints points;
   for (std::size_t pixel = 0; pixel < session.pixels_per_frame(); ++pixel) {
     const float c = confidence[first + pixel];
     if (!(c > 0.0f) || c < min_confidence) continue;
-    points.positions.push_back(point_of(session, frame, pixel, source));
+    const Eigen::Vector3f point = point_of(session, frame, pixel, source);
+    if (point.cast<double>().norm() > max_range) continue;
+    points.positions.push_back(point);
     points.colors.push_back(session.images[first + pixel]);
     points.confidence.push_back(c);
     points.pixel.push_back(static_cast<std::uint32_t>(pixel));

@@ -120,6 +120,10 @@ CameraMount mount_of(const Capture& capture) {
   return {capture.calibration.T_imu_lidar, capture.calibration.T_lidar_camera};
 }
 
+OdometryPoses odometry_poses(const Capture& capture, std::span<const double> times_s, const PreFusionOptions& options) {
+  return camera_poses(capture.lio, mount_of(capture), times_s, options.pairing, options.max_gap_s);
+}
+
 SessionPredictions read_corrected(const Capture& capture, const SessionState& state) {
   SessionPredictions session = read_usable_predictions(capture.sessions[state.outcome.index]);
   if (state.center_factor == 1.0) return session;

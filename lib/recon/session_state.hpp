@@ -31,6 +31,9 @@ nlohmann::ordered_json written(const SessionOutcome& outcome);
 /// How the capture's camera sits on the body.
 CameraMount mount_of(const Capture& capture);
 
+/// Where LiDAR-inertial odometry has the camera at these times.
+OdometryPoses odometry_poses(const Capture& capture, std::span<const double> times_s, const PreFusionOptions& options);
+
 /// A session as the stages after pre-fusion see it, its camera centers corrected.
 SessionPredictions read_corrected(const Capture& capture, const SessionState& state);
 

@@ -4,8 +4,8 @@
 
 #include <fstream>
 
-#include "cmap/core/error.hpp"
 #include "cmap/io/output_file.hpp"
+#include "cmap/io/output_folder.hpp"
 
 namespace cmap {
 
@@ -25,9 +25,7 @@ std::optional<StageFiles::Json> StageFiles::load(std::string_view stage) const {
 
 void StageFiles::save(std::string_view stage, const Json& found) const {
   if (folder_.empty()) return;
-  std::error_code error;
-  fs::create_directories(folder_, error);
-  if (error) throw UsageError(fmt::format("{}: cannot be made: {}", folder_.string(), error.message()));
+  make_folder(folder_);
   OutputFile file(folder_ / fmt::format("{}.json", stage));
   file.write(Json{{"key", key_}, {"found", found}}.dump(1) + "\n");
   file.commit();

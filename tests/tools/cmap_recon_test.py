@@ -6,11 +6,15 @@ import json
 import os
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
 from pathlib import Path
 
 import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "oracle"))
+from ply import read_ply  # noqa: E402
 
 PROGRAM = Path(os.environ["CMAP_RECON"]).resolve()
 SIMULATE = Path(os.environ["CMAP_SIMULATE"]).resolve()
@@ -31,15 +35,6 @@ def lines_kept(path, keep):
     """A table without the rows that `keep` refuses; comments and the header stay."""
     rows = path.read_text().splitlines()
     path.write_text("".join(row + "\n" for row in rows if not row[0].isdigit() or keep(row)))
-
-
-def read_positions(path):
-    """Of a map as cmap_recon writes it: float coordinates first, colors behind."""
-    header, data = path.read_bytes().split(b"end_header\n", 1)
-    names = [line.split()[1:] for line in header.decode().splitlines() if line.startswith("property")]
-    kinds = {"double": "<f8", "float": "<f4", "uchar": "u1"}
-    table = np.frombuffer(data, dtype=[(name, kinds[kind]) for kind, name in names])
-    return np.stack([table[axis].astype(float) for axis in "xyz"], axis=1)
 
 
 def swapped(path, row, column=0, separator=","):
@@ -245,7 +240,7 @@ class Recon(unittest.TestCase):
 
         def farthest_m(*arguments):
             self.recon(*arguments)
-            points = read_positions(self.output / "map.ply")
+            points, _ = read_ply(self.output / "map.ply")
             return max(np.linalg.norm(path - p, axis=1).min() for p in points)
 
         self.assertGreater(farthest_m(), 30)
@@ -260,7 +255,7 @@ class Recon(unittest.TestCase):
         self.recon("--session-maps", "--set", "fusion_doubt=0", "--set", f"fusion_voxel_m={voxel_m}")
         maps = sorted((self.output / "sessions").iterdir())
         self.assertEqual([path.stem for path in maps], sorted(self.truth))
-        voxels = {path: set(map(tuple, np.floor(read_positions(path) / voxel_m).astype(int))) for path in
+        voxels = {path: set(map(tuple, np.floor(read_ply(path)[0] / voxel_m).astype(int))) for path in
                   [self.output / "map.ply", *maps]}
         whole = voxels.pop(self.output / "map.ply")
         # A mean may lie within rounding of its voxel's border.

@@ -6,11 +6,15 @@ import csv
 import json
 import os
 import subprocess
+import sys
 import tempfile
 import unittest
 from pathlib import Path
 
 import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "oracle"))
+from ply import write_ply  # noqa: E402
 
 # Pictures as large as the network's input, without loss and one ray per pixel: a pixel's color is then that of one
 # point of the surface, as in the truth. Points 6 mm apart, as textures change within a centimeter.
@@ -64,15 +68,6 @@ def concatenation(capture):
     if colors.dtype != np.uint8:
         colors = np.round(255 * colors).astype(np.uint8)
     return np.concatenate(points), colors
-
-
-def write_ply(path, points, colors):
-    vertices = np.empty(len(points), dtype=[("p", "<f4", 3), ("c", "u1", 3)])
-    vertices["p"], vertices["c"] = points, colors
-    names = "".join(f"property float {n}\n" for n in "xyz") + "".join(
-        f"property uchar {n}\n" for n in ("red", "green", "blue"))
-    header = f"ply\nformat binary_little_endian 1.0\nelement vertex {len(points)}\n{names}end_header\n"
-    path.write_bytes(header.encode() + vertices.tobytes())
 
 
 class SimulatedTruth(unittest.TestCase):

@@ -4,6 +4,9 @@
 
 namespace cmap {
 
+/// Makes a folder, and those above it, unless it is there. Throws UsageError naming it and the reason.
+void make_folder(const std::filesystem::path& folder);
+
 /// A folder that appears under its name only when it is complete: filled as `<name>.partial` beside it, renamed by
 /// commit(), removed otherwise. Neither may exist before: the one could be somebody's data, the other somebody else's
 /// work. Whoever is killed leaves `<name>.partial`. Every failure throws UsageError naming the path and the reason.

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <limits>
 
 #include "cmap/align/similarity.hpp"
 #include "cmap/core/point_cloud.hpp"
@@ -32,10 +33,10 @@ struct FramePoints {
   Array<std::uint32_t> pixel;  ///< row * width + column
 };
 
-/// The pixels of a frame with at least this confidence. X = (u - cx) d / fx, Y = (v - cy) d / fy, Z = d, pixel centers
-/// at integers. Thread-safe.
+/// The pixels of a frame with at least this confidence, and not farther from the camera than max_range (session units).
+/// X = (u - cx) d / fx, Y = (v - cy) d / fy, Z = d, pixel centers at integers. Thread-safe.
 FramePoints frame_points(const SessionPredictions& session, std::size_t frame, double min_confidence,
-                         PointSource source);
+                         PointSource source, double max_range = std::numeric_limits<double>::infinity());
 
 /// Points of a whole session and how sure it is of each, relative to each other.
 struct SessionCloud {

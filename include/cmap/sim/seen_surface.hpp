@@ -16,8 +16,7 @@ struct SeenSurfaceOptions {
 
 /// The points of sample_surface() that at least one of the views shows: inside the image, within the distance, and with
 /// nothing in between from the camera to 1 cm before the point (the 1 cm is for the point's own surface, seen at a
-/// grazing angle). In the order of sample_surface(). Throws UsageError naming an
-/// option outside of its range.
+/// grazing angle). In the order of sample_surface(). Throws UsageError naming an option outside of its range.
 PointCloud seen_surface(const Scene& scene, const CameraModel& camera,
                         std::span<const Eigen::Isometry3d> T_world_camera, const SeenSurfaceOptions& options = {});
 

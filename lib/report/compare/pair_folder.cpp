@@ -10,6 +10,7 @@
 
 #include "cmap/core/error.hpp"
 #include "cmap/io/json_text.hpp"
+#include "cmap/io/output_folder.hpp"
 #include "cmap/report/comparison.hpp"
 #include "io/sha256.hpp"
 
@@ -65,9 +66,7 @@ void remove_temporaries(const fs::path& folder, const std::vector<std::string>& 
 
 PairFolder::PairFolder(fs::path folder, std::vector<std::string> files)
     : folder_(std::move(folder)), files_(std::move(files)) {
-  std::error_code error;
-  fs::create_directories(folder_, error);
-  if (error) throw UsageError(fmt::format("{}: cannot be made: {}", folder_.string(), error.message()));
+  make_folder(folder_);
   std::vector<std::string> all = files_;
   all.emplace_back(kRecord);
   remove_temporaries(folder_, all);
