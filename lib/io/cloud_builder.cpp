@@ -103,6 +103,18 @@ void CloudBuilder::append(const PointColumns& columns, std::size_t n) {
       positions_);
 }
 
+void CloudBuilder::leave_out(std::string_view reason, std::uint64_t n) {
+  if (n > max_points_ - seen_) throw std::logic_error("CloudBuilder: more points than announced");
+  if (n == 0) return;
+  seen_ += n;
+  const auto known = std::find_if(left_out_.begin(), left_out_.end(), [&](const auto& l) { return l.reason == reason; });
+  if (known != left_out_.end()) {
+    known->n += n;
+  } else {
+    left_out_.push_back({std::string(reason), n});
+  }
+}
+
 template <class Positions>
 void CloudBuilder::append_piece(Positions& positions, const PointColumns& columns, std::size_t first, std::size_t n) {
   using Real = typename Positions::Real;
@@ -182,9 +194,16 @@ void CloudBuilder::check_color(std::size_t i) const {
 PointCloud CloudBuilder::finish(FileInfo& info) {
   info.points = seen_;
   info.finite_points = kept_;
+  info.left_out = std::move(left_out_);
   if (seen_ == 0) source_.fail("holds no points");
-  if (kept_ == 0) source_.fail("none of its {} points is finite", seen_);
-  if (kept_ < seen_) info.notes.push_back(fmt::format("{} of {} points dropped: not finite", seen_ - kept_, seen_));
+  std::string reasons;
+  for (const LeftOut& points : info.left_out) reasons += fmt::format("; {} left out as {}", points.n, points.reason);
+  if (kept_ == 0) source_.fail("none of its {} points is finite{}", seen_, reasons);
+  const std::uint64_t not_finite = seen_ - kept_ - info.n_left_out();
+  if (not_finite > 0) info.notes.push_back(fmt::format("{} of {} points dropped: not finite", not_finite, seen_));
+  for (const LeftOut& points : info.left_out) {
+    info.notes.push_back(fmt::format("{} of {} points left out: {}", points.n, seen_, points.reason));
+  }
   PointCloud cloud;
   cloud.origin = choose_origin(box_).array() + 0.0;  // -0 becomes 0
   cloud.positions = std::visit([&](auto& positions) { return positions.take(cloud.origin); }, positions_);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "cmap/core/point_cloud.hpp"
 #include "cmap/io/point_cloud_file.hpp"
@@ -28,6 +29,8 @@ class CloudBuilder {
 
   /// Adds n points. Throws InputError for a coordinate beyond kMaxCoordinate_m or a float color outside [0,1].
   void append(const PointColumns& columns, std::size_t n);
+  /// Counts n points that the reader does not append, and why ("withheld").
+  void leave_out(std::string_view reason, std::uint64_t n);
   std::uint64_t seen() const { return seen_; }
 
   /// The cloud; fills in the counts of `info`. Throws InputError if no point is left.
@@ -50,6 +53,7 @@ class CloudBuilder {
   Colors colors_;
   Box3d box_;
   std::uint64_t seen_ = 0;
+  std::vector<LeftOut> left_out_;
   std::size_t kept_ = 0;
 };
 

@@ -7,6 +7,12 @@
 
 namespace cmap {
 
+std::uint64_t FileInfo::n_left_out() const {
+  std::uint64_t n = 0;
+  for (const LeftOut& points : left_out) n += points.n;
+  return n;
+}
+
 PointCloudFile read_point_cloud(ByteSource& source) {
   PointCloudFile file;
   file.info.path = source.name();

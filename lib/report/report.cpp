@@ -20,12 +20,16 @@ using Json = nlohmann::ordered_json;
 Json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 Json input_json(const InputDescription& input) {
+  Json left_out = Json::object();
+  for (const LeftOut& points : input.file.left_out) left_out[points.reason] = points.n;
   return {{"path", valid_utf8(input.file.path)},
           {"sha256", input.file.sha256},
           {"format", input.file.format},
           {"points", input.file.points},
           {"finite_points", input.file.finite_points},
+          {"left_out", left_out},
           {"color", input.color},
+          {"color_scale", input.file.color_scale.empty() ? Json(nullptr) : Json(input.file.color_scale)},
           {"origin_m", vector_json(input.origin_m)},
           {"bounds_m", {{"min", vector_json(input.bounds_m.min)}, {"max", vector_json(input.bounds_m.max)}}}};
 }
@@ -93,7 +97,7 @@ Json run_json(const RunDescription& run) {
 
 /// What readers decided on the user's behalf.
 void add_input_warnings(Json& warnings, const char* which, const InputDescription& input) {
-  const std::uint64_t dropped = input.file.points - input.file.finite_points;
+  const std::uint64_t dropped = input.file.points - input.file.finite_points - input.file.n_left_out();
   if (dropped > 0) {
     warnings.push_back(
         {{"id", "non_finite_points_dropped"},
@@ -102,6 +106,10 @@ void add_input_warnings(Json& warnings, const char* which, const InputDescriptio
   }
   for (const std::string& note : input.file.notes) {
     warnings.push_back({{"id", "input_note"}, {"message", valid_utf8(std::string(which) + ": " + note)}});
+  }
+  for (const Warning& warning : input.file.warnings) {
+    warnings.push_back(
+        {{"id", warning.id}, {"message", valid_utf8(std::string(which) + ": " + warning.message)}});
   }
 }
 

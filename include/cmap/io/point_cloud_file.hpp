@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cmap/core/point_cloud.hpp"
+#include "cmap/core/warning.hpp"
 #include "cmap/io/output_file.hpp"
 
 namespace cmap {
@@ -17,14 +18,26 @@ struct ReadOptions {
   bool sha256 = false;
 };
 
+/// Finite points that a reader does not hand on, and why.
+struct LeftOut {
+  std::string reason;  ///< "withheld", "noise", "no return", ...
+  std::uint64_t n = 0;
+};
+
 /// What a reader found out about a file.
 struct FileInfo {
   std::string path;          ///< as given
   std::string format;        ///< for people: "PLY binary little endian", "PCD compressed", "LAS 1.2 format 3", "text"
   std::uint64_t points = 0;  ///< as stored
   std::uint64_t finite_points = 0;  ///< kept
+  std::vector<LeftOut> left_out;    ///< in the order in which the reasons came up
+  std::string color_scale;          ///< what the color numbers mean: "0 to 255", "16 bit", ...; empty without color
   std::string sha256;               ///< lowercase hex; empty unless asked for
   std::vector<std::string> notes;   ///< what was decided on the user's behalf: "8-bit colors in 16-bit fields", ...
+  std::vector<Warning> warnings;    ///< what is probably wrong
+  std::vector<Eigen::Vector3d> sensor_positions;  ///< where the scanner stood, world frame, meters; empty if unknown
+
+  std::uint64_t n_left_out() const;
 };
 
 struct PointCloudFile {
