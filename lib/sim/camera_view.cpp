@@ -247,18 +247,14 @@ void for_each_tile(const Scene& scene, const CameraModel& camera, const Eigen::I
 
 }  // namespace
 
-CameraView render_view(const Scene& scene, const CameraModel& camera, const Eigen::Isometry3d& T_world_camera,
-                       const ViewOptions& options) {
+RgbImage render_image(const Scene& scene, const CameraModel& camera, const Eigen::Isometry3d& T_world_camera,
+                      const ViewOptions& options) {
   check(camera);
   check(options);
-  CameraView view;
-  view.image = {camera.width, camera.height, Array<Rgb8>(pixel_count(camera))};
-  view.depth_m.resize(pixel_count(camera));
-  for_each_tile(scene, camera, T_world_camera, options, [&](const TilePainter& painter) {
-    painter.paint_depth(view.depth_m);
-    painter.paint_color(view.image);
-  });
-  return view;
+  RgbImage image{camera.width, camera.height, Array<Rgb8>(pixel_count(camera))};
+  for_each_tile(scene, camera, T_world_camera, options,
+                [&](const TilePainter& painter) { painter.paint_color(image); });
+  return image;
 }
 
 Array<float> render_depth(const Scene& scene, const CameraModel& camera, const Eigen::Isometry3d& T_world_camera) {
@@ -266,6 +262,11 @@ Array<float> render_depth(const Scene& scene, const CameraModel& camera, const E
   Array<float> depth_m(pixel_count(camera));
   for_each_tile(scene, camera, T_world_camera, {}, [&](const TilePainter& painter) { painter.paint_depth(depth_m); });
   return depth_m;
+}
+
+CameraView render_view(const Scene& scene, const CameraModel& camera, const Eigen::Isometry3d& T_world_camera,
+                       const ViewOptions& options) {
+  return {render_image(scene, camera, T_world_camera, options), render_depth(scene, camera, T_world_camera)};
 }
 
 }  // namespace cmap

@@ -156,14 +156,14 @@ class CaptureRun {
     });
   }
 
-  CameraView take_image(std::size_t i, const CameraModel& camera) {
-    CameraView view = render_view(scene_, camera, T_world_camera(image_times_[i]),
+  RgbImage take_image(std::size_t i, const CameraModel& camera) {
+    RgbImage image = render_image(scene_, camera, T_world_camera(image_times_[i]),
                                   {o_.camera.supersampling, gain(i), o_.camera.vignetting});
-    add_pixel_noise(view.image, i);
+    add_pixel_noise(image, i);
     const fs::path file = writer_.add_image(stated_time(i), "." + o_.camera.format);
-    write_image(view.image, file);
+    write_image(image, file);
     image_names_.push_back(file.filename().string());
-    return view;
+    return image;
   }
 
   double stated_time(std::size_t image) const { return image_times_[image] + o_.stated.image_time_error_s; }
@@ -190,9 +190,11 @@ class CaptureRun {
     std::size_t next = 0;             // session
     std::deque<NetworkFrame> frames;  // from the next session's first one on
     for_each("images", image_times_.size(), 0.3, 0.9, [&](std::size_t i) {
-      CameraView view = take_image(i, camera);
-      if (i % stride == 0) frames.push_back(network_frame(i, view.image, camera, network));
-      if (i == image_times_.size() / 2) middle_view_ = std::move(view);
+      RgbImage image = take_image(i, camera);
+      if (i % stride == 0) frames.push_back(network_frame(i, image, camera, network));
+      if (i == image_times_.size() / 2) {
+        middle_view_ = {std::move(image), render_depth(scene_, camera, T_world_camera(image_times_[i]))};
+      }
       if (next == sessions.size() || frames.size() < sessions[next].count) return;
       write_session(next, frames, network);
       if (++next == sessions.size()) return;

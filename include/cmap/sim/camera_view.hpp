@@ -27,7 +27,9 @@ struct CameraView {
 CameraView render_view(const Scene& scene, const CameraModel& camera, const Eigen::Isometry3d& T_world_camera,
                        const ViewOptions& options = {});
 
-/// Its depth alone.
+/// Its parts alone.
+RgbImage render_image(const Scene& scene, const CameraModel& camera, const Eigen::Isometry3d& T_world_camera,
+                      const ViewOptions& options = {});
 Array<float> render_depth(const Scene& scene, const CameraModel& camera, const Eigen::Isometry3d& T_world_camera);
 
 }  // namespace cmap
