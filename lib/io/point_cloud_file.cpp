@@ -9,7 +9,7 @@ namespace cmap {
 
 std::uint64_t FileInfo::n_left_out() const {
   std::uint64_t n = 0;
-  for (const LeftOut& points : left_out) n += points.n;
+  for (const LeftOut& some : left_out) n += some.n;
   return n;
 }
 
