@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "io/number_text.hpp"
 
@@ -18,8 +19,8 @@ std::vector<Target> field_targets(std::span<const Field> fields, const PointSche
   constexpr std::array kChannels{Target::kRed, Target::kGreen, Target::kBlue};
   for (std::size_t k = 0; k < 3; ++k) {
     targets[schema.position[k]] = kAxes[k];
-    if (schema.layout.color == ColorStorage::kNone) continue;
-    if (schema.layout.color == ColorStorage::kPacked) {
+    if (schema.layout.color.storage == ColorStorage::kNone) continue;
+    if (schema.layout.color.storage == ColorStorage::kPacked) {
       targets[schema.color_fields[0]] = Target::kPacked;
     } else {
       targets[schema.color_fields[k]] = kChannels[k];
@@ -108,13 +109,15 @@ class RowParser {
     return value;
   }
 
-  /// A packed color is the integer 0x..RRGGBB, or the float with these bits (then never a whole number but 0).
+  /// A packed color is the integer 0x..RRGGBB, or the float with these bits (then never a whole number but 0). Written
+  /// as "nan", whatever its bits were, it is lost.
   void unpack(const Field& field, std::string_view token, RowStage::Row& row) const {
     const bool whole = token.find_first_not_of("0123456789") == std::string_view::npos;
     std::uint32_t bits = 0;
     if (field.type == ScalarType::kFloat32 && !whole) {
       float value = 0.0F;
       if (!parse_number(token, value)) lines_.fail("'{}': '{}' is not a number", field.name, token);
+      if (std::isnan(value)) return row.rgb.fill(std::numeric_limits<double>::quiet_NaN());
       bits = std::bit_cast<std::uint32_t>(value);
     } else {
       double value = 0.0;
@@ -133,10 +136,10 @@ class RowParser {
 
 }  // namespace
 
-RowStage::RowStage(CloudBuilder& builder, ColorStorage color) : builder_(builder) {
+RowStage::RowStage(CloudBuilder& builder, bool has_color) : builder_(builder) {
   rows_.reserve(kRows);
   // Rows hold separate channels, whatever the file does.
-  columns_.color = color == ColorStorage::kPacked ? ColorStorage::kRgb8 : color;
+  columns_.color = has_color ? ColorStorage::kSeparate : ColorStorage::kNone;
   const auto* base = reinterpret_cast<const std::byte*>(rows_.data());
   for (std::size_t k = 0; k < 3; ++k) {
     columns_.position[k] = {base + offsetof(Row, xyz) + k * sizeof(double), sizeof(Row), ScalarType::kFloat64};
@@ -159,10 +162,16 @@ void require_ascii_rows(const ByteSource& source, std::uint64_t n, std::span<con
   }
 }
 
+void note_lines_left_over(LineReader& lines, FileInfo& info) {
+  std::uint64_t n = 0;
+  for (std::string_view line; lines.next(line);) n += next_token(line).empty() ? 0 : 1;
+  if (n > 0) info.notes.push_back(fmt::format("{} more lines follow the last row that the header counts; not read", n));
+}
+
 void read_ascii_rows(LineReader& lines, std::uint64_t n, std::span<const Field> fields, const PointSchema& schema,
                      CloudBuilder& builder) {
   const RowParser parser(lines, fields, schema);
-  RowStage stage(builder, schema.layout.color);
+  RowStage stage(builder, schema.layout.color.storage != ColorStorage::kNone);
   std::string_view line;
   for (std::uint64_t i = 0; i < n;) {
     if (!lines.next(line)) lines.fail("truncated: the file ends after {} of {} points", i, n);

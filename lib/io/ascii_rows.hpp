@@ -17,7 +17,7 @@ class RowStage {
     std::array<double, 3> xyz;
     std::array<double, 3> rgb;
   };
-  RowStage(CloudBuilder& builder, ColorStorage color);
+  RowStage(CloudBuilder& builder, bool has_color);
   void add(const Row& row) {
     rows_.push_back(row);
     if (rows_.size() == kRows) flush();
@@ -34,6 +34,9 @@ class RowStage {
 
 /// Throws InputError unless n lines of these fields can lie in the rest of the file; call it before memory is taken.
 void require_ascii_rows(const ByteSource& source, std::uint64_t n, std::span<const Field> fields);
+
+/// Notes lines that follow the last row that the header counts.
+void note_lines_left_over(LineReader& lines, FileInfo& info);
 
 /// Reads n points, one a line (blank lines are passed over), values in the order of the fields.
 void read_ascii_rows(LineReader& lines, std::uint64_t n, std::span<const Field> fields, const PointSchema& schema,

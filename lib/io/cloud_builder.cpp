@@ -9,7 +9,11 @@ namespace cmap {
 namespace {
 
 // Points decoded and then checked while they are still in the cache.
-constexpr std::size_t kPiece = 2048;
+constexpr std::size_t kPiece = ColorStore::kPiece;
+
+// More points exactly at 0 0 0 than a sensor could measure there.
+constexpr std::uint64_t kManyZeros = 10;
+constexpr double kManyZerosShare = 1e-3;
 
 template <class Real>
 struct PieceBounds {
@@ -43,51 +47,56 @@ PieceBounds<Real> measure(const Real* xyz, std::size_t n) {
 }
 
 template <class Real>
-bool in_range(const PieceBounds<Real>& bounds) {
-  const auto fits = [](Real value) { return std::abs(static_cast<double>(value)) <= kMaxCoordinate_m; };
-  return bounds.finite && std::all_of(bounds.min.begin(), bounds.min.end(), fits) &&
-         std::all_of(bounds.max.begin(), bounds.max.end(), fits);
+bool is_return(Real value) {
+  return std::abs(static_cast<double>(value)) < CloudBuilder::kNoReturn_m;
 }
 
-Colors make_colors(ColorStorage storage, std::size_t n) {
-  switch (storage) {
-    case ColorStorage::kNone:
-      break;
-    case ColorStorage::kRgb8:
-    case ColorStorage::kPacked:
-      return Array<Rgb8>(n);
-    case ColorStorage::kRgb16:
-      return Array<Rgb16>(n);
-    case ColorStorage::kFloat:
-    case ColorStorage::kAnyFloat:
-      return Array<RgbF>(n);
+template <class Real>
+bool all_stay(const PieceBounds<Real>& bounds) {
+  return bounds.finite && std::all_of(bounds.min.begin(), bounds.min.end(), is_return<Real>) &&
+         std::all_of(bounds.max.begin(), bounds.max.end(), is_return<Real>);
+}
+
+template <class Real>
+bool is_zero(const Real* point) {
+  return point[0] == Real{0} && point[1] == Real{0} && point[2] == Real{0};
+}
+
+/// How many points lie exactly at 0 0 0; the box around the others grows.
+template <class Real>
+std::uint64_t add_to_box(const Real* xyz, std::size_t n, const PieceBounds<Real>& bounds, Box3d& box) {
+  const auto spans_zero = [&](std::size_t axis) { return bounds.min[axis] <= Real{0} && bounds.max[axis] >= Real{0}; };
+  std::uint64_t n_zero = 0;
+  if (spans_zero(0) && spans_zero(1) && spans_zero(2)) {
+    for (std::size_t i = 0; i < n; ++i) n_zero += is_zero(xyz + 3 * i) ? 1 : 0;
   }
-  return {};
-}
-
-/// Calls f with the array of colors, if there is one.
-template <class Variant, class F>
-void with_colors(Variant& colors, F&& f) {
-  std::visit(
-      [&]<class T>(T& values) {
-        if constexpr (!std::is_same_v<std::remove_const_t<T>, std::monostate>) f(values);
-      },
-      colors);
+  const auto grow = [&](const Real* low, const Real* high) {
+    using Triple = Eigen::Matrix<Real, 3, 1>;
+    box.min = box.min.cwiseMin(Eigen::Map<const Triple>(low).template cast<double>());
+    box.max = box.max.cwiseMax(Eigen::Map<const Triple>(high).template cast<double>());
+  };
+  if (n_zero == 0) {
+    grow(bounds.min.data(), bounds.max.data());
+  } else {
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!is_zero(xyz + 3 * i)) grow(xyz + 3 * i, xyz + 3 * i);
+    }
+  }
+  return n_zero;
 }
 
 }  // namespace
 
 CloudBuilder::CloudBuilder(const ByteSource& source, CloudLayout layout, std::uint64_t max_points)
     : source_(source),
-      layout_(std::move(layout)),
       max_points_(max_points),
-      positions_(std::in_place_type<FloatPositions>, 0) {
-  if (layout_.wide) {
+      positions_(std::in_place_type<FloatPositions>, 0),
+      colors_(std::move(layout.color), max_points) {
+  if (layout.wide) {
     positions_.emplace<DoublePositions>(max_points);
   } else {
     positions_.emplace<FloatPositions>(max_points);
   }
-  colors_ = make_colors(layout_.color, max_points);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   box_ = {Eigen::Vector3d::Constant(kInfinity), Eigen::Vector3d::Constant(-kInfinity)};
 }
@@ -103,11 +112,51 @@ void CloudBuilder::append(const PointColumns& columns, std::size_t n) {
       positions_);
 }
 
+template <class Positions>
+void CloudBuilder::append_piece(Positions& positions, const PointColumns& columns, std::size_t first, std::size_t n) {
+  using Real = typename Positions::Real;
+  Real* xyz = positions.room(n);
+  decode_positions(columns, first, n, xyz);
+  PieceBounds<Real> bounds = measure(xyz, n);
+  const bool stay = all_stay(bounds);
+  const std::size_t n_kept = stay ? n : filter(xyz, n);
+  if (n_kept > 0) {
+    if (!stay) bounds = measure(xyz, n_kept);
+    n_at_zero_ += add_to_box(xyz, n_kept, bounds, box_);
+    colors_.append(source_, columns, first, n, stay ? nullptr : &kept_rows_, seen_);
+  }
+  positions.keep(n_kept);
+  kept_ += n_kept;
+  seen_ += n;
+}
+
+/// Moves the points that stay to the front; returns how many, and which in kept_rows_.
+template <class Real>
+std::size_t CloudBuilder::filter(Real* xyz, std::size_t n) {
+  kept_rows_.clear();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Real* point = xyz + 3 * i;
+    if (!std::all_of(point, point + 3, [](Real value) { return std::isfinite(value); })) continue;
+    if (!std::all_of(point, point + 3, is_return<Real>)) {
+      ++n_no_return_;
+      continue;
+    }
+    std::copy(point, point + 3, xyz + 3 * kept_rows_.size());
+    kept_rows_.push_back(static_cast<std::uint32_t>(i));
+  }
+  return kept_rows_.size();
+}
+
 void CloudBuilder::leave_out(std::string_view reason, std::uint64_t n) {
   if (n > max_points_ - seen_) throw std::logic_error("CloudBuilder: more points than announced");
-  if (n == 0) return;
   seen_ += n;
-  const auto known = std::find_if(left_out_.begin(), left_out_.end(), [&](const auto& l) { return l.reason == reason; });
+  count_left_out(reason, n);
+}
+
+void CloudBuilder::count_left_out(std::string_view reason, std::uint64_t n) {
+  if (n == 0) return;
+  const auto known =
+      std::find_if(left_out_.begin(), left_out_.end(), [&](const LeftOut& some) { return some.reason == reason; });
   if (known != left_out_.end()) {
     known->n += n;
   } else {
@@ -115,100 +164,45 @@ void CloudBuilder::leave_out(std::string_view reason, std::uint64_t n) {
   }
 }
 
-template <class Positions>
-void CloudBuilder::append_piece(Positions& positions, const PointColumns& columns, std::size_t first, std::size_t n) {
-  using Real = typename Positions::Real;
-  Real* xyz = positions.room(n);
-  decode_positions(columns, first, n, xyz);
-  decode_piece_colors(columns, first, n);
-  PieceBounds<Real> bounds = measure(xyz, n);
-  std::size_t n_kept = n;
-  if (!in_range(bounds) || !colors_fit(n)) {
-    n_kept = filter(xyz, n);
-    if (n_kept > 0) bounds = measure(xyz, n_kept);
+/// Points at 0 0 0 that stand for "no return" are known by their number, so only at the end.
+void CloudBuilder::drop_many_zeros() {
+  if (n_at_zero_ == 0) return;
+  const bool many =
+      n_at_zero_ >= kManyZeros && static_cast<double>(n_at_zero_) >= kManyZerosShare * static_cast<double>(kept_);
+  if (!many) {
+    box_.min = box_.min.cwiseMin(Eigen::Vector3d::Zero());
+    box_.max = box_.max.cwiseMax(Eigen::Vector3d::Zero());
+    return;
   }
-  if (n_kept > 0) {
-    box_.min =
-        box_.min.cwiseMin(Eigen::Map<const Eigen::Matrix<Real, 3, 1>>(bounds.min.data()).template cast<double>());
-    box_.max =
-        box_.max.cwiseMax(Eigen::Map<const Eigen::Matrix<Real, 3, 1>>(bounds.max.data()).template cast<double>());
-  }
-  positions.keep(n_kept);
-  kept_ += n_kept;
-  seen_ += n;
+  const Array<std::uint8_t> keep = std::visit([](auto& positions) { return positions.drop_zeros(); }, positions_);
+  colors_.select(keep);
+  kept_ -= n_at_zero_;
+  count_left_out("no return (exactly at 0 0 0)", n_at_zero_);
 }
 
-void CloudBuilder::decode_piece_colors(const PointColumns& columns, std::size_t first, std::size_t n) {
-  with_colors(colors_, [&](auto& colors) { decode_colors(columns, first, n, colors[kept_].data()); });
-}
-
-/// Moves the points that stay to the front, and their colors with them; returns how many.
-template <class Real>
-std::size_t CloudBuilder::filter(Real* xyz, std::size_t n) {
-  std::size_t out = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Real* point = xyz + 3 * i;
-    const auto finite = [](Real value) { return std::isfinite(value); };
-    if (!std::all_of(point, point + 3, finite) || !color_is_finite(kept_ + i)) continue;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (std::abs(static_cast<double>(point[axis])) <= kMaxCoordinate_m) continue;
-      source_.fail("point {}: {} = {:g} is beyond the accepted +-{:g} m", seen_ + i + 1, "xyz"[axis], point[axis],
-                   kMaxCoordinate_m);
-    }
-    if (layout_.color == ColorStorage::kFloat) check_color(i);
-    std::copy(point, point + 3, xyz + 3 * out);
-    with_colors(colors_, [&](auto& colors) { colors[kept_ + out] = colors[kept_ + i]; });
-    ++out;
-  }
-  return out;
-}
-
-/// Whether the last n colors need no look at each: everything but a float outside [0,1].
-bool CloudBuilder::colors_fit(std::size_t n) const {
-  const auto* colors = std::get_if<Array<RgbF>>(&colors_);
-  if (colors == nullptr) return true;
-  const float highest = layout_.color == ColorStorage::kFloat ? 1.0F : std::numeric_limits<float>::max();
-  bool fit = true;
-  for (std::size_t i = kept_; i < kept_ + n; ++i) {
-    for (const float value : (*colors)[i]) fit = fit && value >= 0.0F && value <= highest;
-  }
-  return fit;
-}
-
-bool CloudBuilder::color_is_finite(std::size_t i) const {
-  const auto* colors = std::get_if<Array<RgbF>>(&colors_);
-  return colors == nullptr ||
-         std::all_of((*colors)[i].begin(), (*colors)[i].end(), [](float value) { return std::isfinite(value); });
-}
-
-void CloudBuilder::check_color(std::size_t i) const {
-  const RgbF& color = std::get<Array<RgbF>>(colors_)[kept_ + i];
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (color[k] >= 0.0F && color[k] <= 1.0F) continue;
-    source_.fail("point {}: {} = {:g}, but colors stored as floats must lie in [0,1]{}", seen_ + i + 1,
-                 layout_.color_names[k], color[k],
-                 color[k] > 1.0F && color[k] <= 255.0F ? " (if they are 0..255, store them as uchar)" : "");
-  }
-}
-
-PointCloud CloudBuilder::finish(FileInfo& info) {
+void CloudBuilder::describe(FileInfo& info) {
   info.points = seen_;
   info.finite_points = kept_;
   info.left_out = std::move(left_out_);
   if (seen_ == 0) source_.fail("holds no points");
   std::string reasons;
-  for (const LeftOut& points : info.left_out) reasons += fmt::format("; {} left out as {}", points.n, points.reason);
+  for (const LeftOut& points : info.left_out) reasons += fmt::format("; {} left out: {}", points.n, points.reason);
   if (kept_ == 0) source_.fail("none of its {} points is finite{}", seen_, reasons);
   const std::uint64_t not_finite = seen_ - kept_ - info.n_left_out();
   if (not_finite > 0) info.notes.push_back(fmt::format("{} of {} points dropped: not finite", not_finite, seen_));
   for (const LeftOut& points : info.left_out) {
     info.notes.push_back(fmt::format("{} of {} points left out: {}", points.n, seen_, points.reason));
   }
+}
+
+PointCloud CloudBuilder::finish(FileInfo& info) {
+  count_left_out("no return (a coordinate of 1e9 or more)", n_no_return_);
+  drop_many_zeros();
+  describe(info);
   PointCloud cloud;
   cloud.origin = choose_origin(box_).array() + 0.0;  // -0 becomes 0
   cloud.positions = std::visit([&](auto& positions) { return positions.take(cloud.origin); }, positions_);
-  with_colors(colors_, [&](auto& colors) { trim(colors, kept_); });
-  cloud.colors = std::move(colors_);
+  cloud.colors = colors_.finish(source_, info);
   return cloud;
 }
 

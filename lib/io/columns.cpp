@@ -87,8 +87,12 @@ void decode_colors(const PointColumns& columns, std::size_t first, std::size_t n
       }
       return;
     }
-    if (adjacent(columns.rgb, ScalarType::kUint8)) return copy_triples<3>(columns.rgb[0], first, n, rgb);
   }
+  constexpr ScalarType kSame = std::is_same_v<Channel, std::uint8_t>    ? ScalarType::kUint8
+                               : std::is_same_v<Channel, std::uint16_t> ? ScalarType::kUint16
+                                                                        : ScalarType::kFloat32;
+  const bool in_order = sizeof(Channel) == 1 || !columns.swap_bytes;
+  if (in_order && adjacent(columns.rgb, kSame)) return copy_triples<3 * sizeof(Channel)>(columns.rgb[0], first, n, rgb);
   for (std::size_t k = 0; k < 3; ++k) {
     decode_column(columns.rgb[k], columns.swap_bytes, first, n, rgb + k,
                   [](auto value) { return static_cast<Channel>(value); });

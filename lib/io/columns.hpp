@@ -14,14 +14,11 @@ struct Column {
   ScalarType type = ScalarType::kFloat32;
 };
 
-/// How a file stores color, and so what becomes of it.
+/// How a file stores color.
 enum class ColorStorage {
   kNone,
-  kRgb8,      ///< three columns -> Rgb8
-  kRgb16,     ///< three columns -> Rgb16
-  kFloat,     ///< three columns in [0,1] -> RgbF
-  kAnyFloat,  ///< the same, its range left to the reader
-  kPacked,    ///< one 32-bit column 0x..RRGGBB, integer or the bits of a float (PCL) -> Rgb8
+  kSeparate,  ///< three columns, of any type
+  kPacked,    ///< one 32-bit column 0x..RRGGBB, integer or the bits of a float (PCL)
 };
 
 /// Points as columns of numbers: records of a file (equal strides) or columns proper (compressed PCD).

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "io/line_reader.hpp"
+
 namespace cmap {
 namespace {
 
@@ -67,7 +69,8 @@ bool looks_like_pcd(std::string_view start) {
 
 FileFormat detect_format(ByteSource& source) {
   const auto bytes = source.peek(std::min<std::uint64_t>(4096, source.size()));
-  const std::string_view start(reinterpret_cast<const char*>(bytes.data()), std::min<std::size_t>(4096, bytes.size()));
+  const std::string_view start = without_byte_order_mark(
+      {reinterpret_cast<const char*>(bytes.data()), std::min<std::size_t>(4096, bytes.size())});
   if (start.starts_with("ply\n") || start.starts_with("ply\r")) return FileFormat::kPly;
   if (start.starts_with("LASF")) return FileFormat::kLas;
   if (start.starts_with("\x93NUMPY")) return FileFormat::kNpy;

@@ -21,25 +21,8 @@ RecordLayout las_layout(const LasHeader& header) {
     layout.color_offsets[k] = header.rgb_offset + 2 * k;
     layout.columns.rgb[k].type = ScalarType::kUint16;
   }
-  if (header.rgb_offset > 0) layout.columns.color = ColorStorage::kRgb16;
+  if (header.rgb_offset > 0) layout.columns.color = ColorStorage::kSeparate;
   return layout;
-}
-
-/// Many writers put 8-bit values into the 16-bit fields, against the specification.
-void recognize_8bit_colors(Colors& colors, FileInfo& info) {
-  const auto* wide = std::get_if<Array<Rgb16>>(&colors);
-  if (wide == nullptr) return;
-  std::uint16_t highest = 0;
-  for (const Rgb16& color : *wide) highest = std::max({highest, color[0], color[1], color[2]});
-  if (highest > 255) return;
-  info.notes.emplace_back(highest > 0 ? "8-bit colors in 16-bit fields"
-                                      : "all colors are black: probably none were stored");
-  Array<Rgb8> narrow(wide->size());
-  std::transform(wide->begin(), wide->end(), narrow.begin(), [](const Rgb16& color) {
-    return Rgb8{static_cast<std::uint8_t>(color[0]), static_cast<std::uint8_t>(color[1]),
-                static_cast<std::uint8_t>(color[2])};
-  });
-  colors = std::move(narrow);
 }
 
 }  // namespace
@@ -50,11 +33,9 @@ PointCloud read_las(ByteSource& source, FileInfo& info) {
   source.skip(header.data_offset, "all that comes before the points");
   require_records(source, header.points, header.record_bytes);
   const RecordLayout layout = las_layout(header);
-  CloudBuilder builder(source, {true, layout.columns.color, {"red", "green", "blue"}}, header.points);
+  CloudBuilder builder(source, {true, {layout.columns.color, ScalarType::kUint16}}, header.points);
   read_records(source, header.points, layout, builder);
-  PointCloud cloud = builder.finish(info);
-  recognize_8bit_colors(cloud.colors, info);
-  return cloud;
+  return builder.finish(info);
 }
 
 }  // namespace cmap

@@ -7,10 +7,11 @@
 
 namespace cmap {
 
-/// The lines of a source, counted from 1. LF and CRLF both end a line; the last one may lack its end.
+/// The lines of a source, counted from 1, without a UTF-8 byte order mark at its start. LF and CRLF end a line; where
+/// the first line ends with a lone CR (as on old Macs), so do all. The last line may lack its end.
 class LineReader {
  public:
-  explicit LineReader(ByteSource& source) : source_(source) {}
+  explicit LineReader(ByteSource& source);
 
   /// The next line without its end, valid until the next call; false at the end of the file.
   bool next(std::string_view& line);
@@ -26,6 +27,10 @@ class LineReader {
  private:
   ByteSource& source_;
   std::uint64_t number_ = 0;
+  char end_ = '\n';
 };
+
+/// The text without a UTF-8 byte order mark at its start.
+std::string_view without_byte_order_mark(std::string_view text);
 
 }  // namespace cmap

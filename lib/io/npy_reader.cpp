@@ -33,9 +33,9 @@ PointCloud cloud_of(const ByteSource& source, const NpyArray& points, const Arra
     if (colors.empty()) continue;
     columns.rgb[k] = {reinterpret_cast<const std::byte*>(colors.data()) + k, sizeof(Rgb8), ScalarType::kUint8};
   }
-  columns.color = colors.empty() ? ColorStorage::kNone : ColorStorage::kRgb8;
+  columns.color = colors.empty() ? ColorStorage::kNone : ColorStorage::kSeparate;
   const std::uint64_t n = points.size() / 3;
-  CloudBuilder builder(source, {wide, columns.color, {"red", "green", "blue"}}, n);
+  CloudBuilder builder(source, {wide, {columns.color, ScalarType::kUint8}}, n);
   builder.append(columns, n);
   return builder.finish(info);
 }

@@ -1,6 +1,8 @@
 #include "io/pcd_header.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "io/number_text.hpp"
 
@@ -73,8 +75,9 @@ std::vector<Field> make_fields(const LineReader& lines, const RawHeader& raw) {
     const auto type = raw.types[i].size() == 1 ? scalar_from_pcd(raw.types[i][0], bytes) : std::nullopt;
     if (!type) lines.fail("the field '{}' has unknown TYPE {} of SIZE {}", raw.fields[i], raw.types[i], raw.sizes[i]);
     const std::uint64_t count = raw.counts.empty() ? 1 : whole_number(lines, raw.counts[i]);
-    if (count == 0 || count > ByteSource::kMaxRecordBytes) {
-      lines.fail("the field '{}' has COUNT {}; 1 to {} expected", raw.fields[i], count, ByteSource::kMaxRecordBytes);
+    // COUNT 0 occurs for fields that only pad.
+    if (count > ByteSource::kMaxRecordBytes) {
+      lines.fail("the field '{}' has COUNT {}; at most {} expected", raw.fields[i], count, ByteSource::kMaxRecordBytes);
     }
     fields[i] = {raw.fields[i], *type, static_cast<std::size_t>(count), std::nullopt};
   }
@@ -93,15 +96,19 @@ std::uint64_t count_points(const LineReader& lines, const RawHeader& raw) {
   return product;
 }
 
-void note_viewpoint(const RawHeader& raw, FileInfo& info) {
+/// VIEWPOINT is where the sensor was (tx ty tz qw qx qy qz); the points are not moved by it.
+void keep_viewpoint(const RawHeader& raw, FileInfo& info) {
   constexpr double kIdentity[] = {0, 0, 0, 1, 0, 0, 0};
   if (raw.viewpoint.empty()) return;
-  bool identity = raw.viewpoint.size() == 7;
-  for (std::size_t i = 0; identity && i < 7; ++i) {
-    double value = 0.0;
-    identity = parse_number(raw.viewpoint[i], value) && value == kIdentity[i];
+  std::array<double, 7> values{};
+  bool good = raw.viewpoint.size() == values.size();
+  for (std::size_t i = 0; good && i < values.size(); ++i) good = parse_number(raw.viewpoint[i], values[i]);
+  if (!good || !std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) {
+    info.notes.emplace_back("VIEWPOINT is no pose and was ignored");
+  } else if (!std::equal(values.begin(), values.end(), kIdentity)) {
+    info.sensor_positions.emplace_back(values[0], values[1], values[2]);
+    info.notes.emplace_back("VIEWPOINT is not the identity: kept as the sensor's position; it does not move the points");
   }
-  if (!identity) info.notes.emplace_back("VIEWPOINT is not the identity and was ignored");
 }
 
 }  // namespace
@@ -123,7 +130,7 @@ PcdHeader read_pcd_header(LineReader& lines, FileInfo& info) {
   }
   header.fields = make_fields(lines, raw);
   header.points = count_points(lines, raw);
-  note_viewpoint(raw, info);
+  keep_viewpoint(raw, info);
   return header;
 }
 

@@ -17,7 +17,8 @@ struct PcdHeader {
   PcdData data = PcdData::kAscii;
 };
 
-/// Reads up to and including the line DATA. Throws InputError naming the line; notes a VIEWPOINT that is not identity.
+/// Reads up to and including the line DATA. Throws InputError naming the line; a VIEWPOINT that is
+/// not the identity goes to info.sensor_positions.
 PcdHeader read_pcd_header(LineReader& lines, FileInfo& info);
 
 }  // namespace cmap

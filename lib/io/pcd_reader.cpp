@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <bit>
 
 #include "io/ascii_rows.hpp"
@@ -25,6 +26,24 @@ void read_compressed(ByteSource& source, const PcdHeader& header, const RecordLa
   builder.append(columns, header.points);
 }
 
+/// Points whose records the header gives the wrong size are read shifted. Zeros at the end are what mapped files keep.
+void check_bytes_left_over(ByteSource& source, std::uint64_t points, FileInfo& info) {
+  const std::uint64_t n = source.remaining();
+  if (n == 0) return;
+  bool empty = true;
+  for (auto bytes = source.peek(1); !bytes.empty() && empty; bytes = source.peek(1)) {
+    empty = std::all_of(bytes.begin(), bytes.end(), [](std::byte b) {
+      return b == std::byte{0} || b == std::byte{'\n'} || b == std::byte{'\r'};
+    });
+    source.advance(bytes.size());
+  }
+  if (!empty) {
+    const std::string each = n % points == 0 ? fmt::format(", exactly {} a point", n / points) : "";
+    source.fail("{} bytes are left over after all that the header says{}; the points would be read shifted", n, each);
+  }
+  if (n > 2) info.notes.push_back(fmt::format("{} bytes of nothing follow the points; not read", n));
+}
+
 }  // namespace
 
 PointCloud read_pcd(ByteSource& source, FileInfo& info) {
@@ -37,6 +56,7 @@ PointCloud read_pcd(ByteSource& source, FileInfo& info) {
     require_ascii_rows(source, header.points, header.fields);
     CloudBuilder builder(source, schema.layout, header.points);
     read_ascii_rows(lines, header.points, header.fields, schema, builder);
+    note_lines_left_over(lines, info);
     return builder.finish(info);
   }
   RecordLayout layout = record_layout(source, header.fields, schema);
@@ -46,6 +66,7 @@ PointCloud read_pcd(ByteSource& source, FileInfo& info) {
     require_records(source, header.points, layout.bytes);
     CloudBuilder builder(source, schema.layout, header.points);
     read_records(source, header.points, layout, builder);
+    if (header.points > 0) check_bytes_left_over(source, header.points, info);
     return builder.finish(info);
   }
   info.format = "PCD compressed";

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "io/number_text.hpp"
+#include "io/point_names.hpp"
 
 namespace cmap {
 namespace {
@@ -29,30 +30,34 @@ PlyElement parse_element(const LineReader& lines, std::string_view rest) {
   return element;
 }
 
-ScalarType parse_type(const LineReader& lines, std::string_view token) {
+ScalarType parse_type(const LineReader& lines, const PlyElement& element, std::string_view token) {
   const auto type = scalar_from_ply_name(token);
-  if (!type) lines.fail("unknown property type '{}'", token);
+  if (!type) lines.fail("unknown property type '{}' in element '{}'", token, element.name);
   return *type;
 }
 
-Field parse_property(const LineReader& lines, std::string_view rest) {
+Field parse_property(const LineReader& lines, const PlyElement& element, std::string_view rest) {
   Field field;
   std::string_view token = next_token(rest);
   if (token == "list") {
-    field.list_count_type = parse_type(lines, next_token(rest));
+    field.list_count_type = parse_type(lines, element, next_token(rest));
     if (is_floating(*field.list_count_type)) lines.fail("the length of a list cannot be a floating-point number");
     token = next_token(rest);
   }
-  field.type = parse_type(lines, token);
+  field.type = parse_type(lines, element, token);
   field.name = next_token(rest);
   if (field.name.empty()) lines.fail("a property without a name");
   return field;
 }
 
-void refuse_splats(const ByteSource& source, const PlyElement& vertex) {
-  const bool splat = std::any_of(vertex.properties.begin(), vertex.properties.end(),
-                                 [](const Field& field) { return field.name.starts_with("f_dc_"); });
-  if (splat) {
+std::vector<std::string> property_names(const PlyElement& element) {
+  std::vector<std::string> names;
+  for (const Field& field : element.properties) names.push_back(field.name);
+  return names;
+}
+
+void refuse_splats(const ByteSource& source, const PlyElement& element) {
+  if (element.name == "chunk" || names_splats(property_names(element))) {
     source.fail(
         "holds Gaussian splats (property f_dc_*), not points with colors; export the splats' centers as a colored "
         "point cloud first (red = 255 * (0.5 + 0.282095 * f_dc_0), and so on)");
@@ -61,12 +66,12 @@ void refuse_splats(const ByteSource& source, const PlyElement& vertex) {
 
 std::size_t find_vertex(const ByteSource& source, const std::vector<PlyElement>& elements) {
   const auto is_vertex = [](const PlyElement& element) { return element.name == "vertex"; };
+  for (const PlyElement& element : elements) refuse_splats(source, element);
   const auto found = std::find_if(elements.begin(), elements.end(), is_vertex);
   if (found == elements.end()) source.fail("header: no element 'vertex'");
   if (std::find_if(found + 1, elements.end(), is_vertex) != elements.end()) {
     source.fail("header: the element 'vertex' is declared twice");
   }
-  refuse_splats(source, *found);
   return static_cast<std::size_t>(found - elements.begin());
 }
 
@@ -87,7 +92,7 @@ PlyHeader read_ply_header(LineReader& lines) {
   PlyHeader header;
   bool has_format = false;
   std::string_view line;
-  if (!lines.next(line) || line != "ply") lines.fail("a PLY file starts with the line 'ply'");
+  if (!lines.next(line) || next_token(line) != "ply") lines.fail("a PLY file starts with the line 'ply'");
   for (;;) {
     if (!lines.next(line)) lines.fail("truncated: the file ends before 'end_header'");
     std::string_view rest = line;
@@ -101,7 +106,8 @@ PlyHeader read_ply_header(LineReader& lines) {
       header.elements.push_back(parse_element(lines, rest));
     } else if (keyword == "property") {
       if (header.elements.empty()) lines.fail("a property before any element");
-      header.elements.back().properties.push_back(parse_property(lines, rest));
+      PlyElement& element = header.elements.back();
+      element.properties.push_back(parse_property(lines, element, rest));
     } else {
       lines.fail("unknown PLY keyword '{}'", keyword.substr(0, 40));
     }

@@ -3,6 +3,7 @@
 #include "io/ascii_rows.hpp"
 #include "io/format_readers.hpp"
 #include "io/ply_header.hpp"
+#include "io/ply_rest.hpp"
 #include "io/ply_rows.hpp"
 #include "io/record_reader.hpp"
 
@@ -93,6 +94,17 @@ PointCloud read_vertices(LineReader& lines, const PlyHeader& header, const Point
   return builder.finish(info);
 }
 
+/// Steps over what comes before the points.
+void skip_elements(LineReader& lines, const PlyHeader& header) {
+  for (std::size_t e = 0; e < header.vertex; ++e) {
+    if (header.format == PlyFormat::kAscii) {
+      skip_ascii_element(lines, header.elements[e]);
+    } else {
+      skip_binary_element(lines.source(), header.elements[e], needs_swap(header.format));
+    }
+  }
+}
+
 }  // namespace
 
 PointCloud read_ply(ByteSource& source, FileInfo& info) {
@@ -100,14 +112,10 @@ PointCloud read_ply(ByteSource& source, FileInfo& info) {
   const PlyHeader header = read_ply_header(lines);
   info.format = format_name(header.format);
   const PointSchema schema = find_point_schema(source, header.elements[header.vertex].properties, info);
-  for (std::size_t e = 0; e < header.vertex; ++e) {
-    if (header.format == PlyFormat::kAscii) {
-      skip_ascii_element(lines, header.elements[e]);
-    } else {
-      skip_binary_element(source, header.elements[e], needs_swap(header.format));
-    }
-  }
-  return read_vertices(lines, header, schema, info);
+  skip_elements(lines, header);
+  PointCloud cloud = read_vertices(lines, header, schema, info);
+  check_ply_rest(lines, header, needs_swap(header.format), info);
+  return cloud;
 }
 
 }  // namespace cmap

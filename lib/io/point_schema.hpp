@@ -30,8 +30,17 @@ struct PointSchema {
   CloudLayout layout;
 };
 
-/// Finds x y z and, by the names that are in use, the colors. Throws InputError if a coordinate is missing or a color
-/// has a type that cannot be one; notes color fields that do not make a color.
+/// Finds x y z and the colors by their names (PointNames). Throws InputError if a coordinate is missing; notes color
+/// fields that do not make a color, and the fields that nothing is taken from.
 PointSchema find_point_schema(const ByteSource& source, std::span<const Field> fields, FileInfo& info);
+
+/// "a, b, c and 4 more".
+std::string listed(std::span<const std::string> names);
+
+/// Notes "<what> not used: a, b, c", if there are any.
+void note_unused(std::span<const std::string> names, const char* what, FileInfo& info);
+
+/// Warns where the name of a coordinate says another unit than meters.
+void note_units(std::span<const std::string> names, const std::array<std::size_t, 3>& position, FileInfo& info);
 
 }  // namespace cmap

@@ -8,7 +8,31 @@ namespace {
 // 48 MiB of doubles: beyond the size up to which malloc keeps freed memory to itself.
 constexpr std::size_t kChunkPoints = std::size_t{1} << 21;
 
+/// Moves the points that are not at zero to the front and appends to `keep` which stay; returns how many do.
+template <class Positions>
+std::size_t move_nonzero(Positions& positions, std::size_t n, Array<std::uint8_t>& keep) {
+  std::size_t out = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const bool stays = !positions[i].isZero(0);
+    if (stays) positions[out++] = positions[i];
+    keep.push_back(stays ? 1 : 0);
+  }
+  return out;
+}
+
 }  // namespace
+
+Array<std::uint8_t> FloatPositions::drop_zeros() {
+  Array<std::uint8_t> keep;
+  kept_ = move_nonzero(positions_, kept_, keep);
+  return keep;
+}
+
+Array<std::uint8_t> DoublePositions::drop_zeros() {
+  Array<std::uint8_t> keep;
+  for (Chunk& chunk : chunks_) chunk.kept = move_nonzero(chunk.positions, chunk.kept, keep);
+  return keep;
+}
 
 Array<Eigen::Vector3f> FloatPositions::take(const Eigen::Vector3d& origin) {
   trim(positions_, kept_);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "cmap/core/array.hpp"
@@ -19,6 +20,8 @@ class FloatPositions {
   float* room(std::size_t) { return positions_.data()->data() + 3 * kept_; }
   void keep(std::size_t n) { kept_ += n; }
   std::size_t size() const { return kept_; }
+  /// Drops the points exactly at 0 0 0; says of each which stays.
+  Array<std::uint8_t> drop_zeros();
   /// Positions as offsets from the origin.
   Array<Eigen::Vector3f> take(const Eigen::Vector3d& origin);
 
@@ -37,6 +40,7 @@ class DoublePositions {
   double* room(std::size_t n);
   void keep(std::size_t n) { chunks_.back().kept += n; }
   std::size_t size() const;
+  Array<std::uint8_t> drop_zeros();
   Array<Eigen::Vector3f> take(const Eigen::Vector3d& origin);
 
  private:

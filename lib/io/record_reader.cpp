@@ -16,7 +16,7 @@ RecordLayout record_layout(const ByteSource& source, std::span<const Field> fiel
       source.fail("header: a point takes more than the accepted {} bytes", ByteSource::kMaxRecordBytes);
     }
   }
-  layout.columns.color = schema.layout.color;
+  layout.columns.color = schema.layout.color.storage;
   for (std::size_t k = 0; k < 3; ++k) {
     layout.position_offsets[k] = offsets[schema.position[k]];
     layout.columns.position[k].type = fields[schema.position[k]].type;

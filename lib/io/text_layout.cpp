@@ -2,98 +2,93 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 
-#include "io/number_text.hpp"
+#include "io/point_schema.hpp"
 
 namespace cmap {
 namespace {
 
-bool is_separator(char c) { return c == ',' || c == ';'; }
-
-std::string_view skip_blanks(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  return text;
-}
-
-std::string normalized(std::string_view name) {
-  while (!name.empty() && (name.front() == '"' || name.front() == '\'')) name.remove_prefix(1);
-  while (!name.empty() && (name.back() == '"' || name.back() == '\'')) name.remove_suffix(1);
-  std::string lower(name);
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
-  return lower;
-}
-
 using Names = std::vector<std::string>;
-using Triple = std::array<std::string_view, 3>;
-constexpr Triple kAxes{"x", "y", "z"};
 
-std::optional<std::array<std::size_t, 3>> find_triple(const Names& names, const Triple& wanted) {
-  std::array<std::size_t, 3> places{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto found =
-        std::find_if(names.begin(), names.end(), [&](const auto& name) { return normalized(name) == wanted[k]; });
-    if (found == names.end()) return std::nullopt;
-    places[k] = static_cast<std::size_t>(found - names.begin());
-  }
-  return places;
+/// The names of a header line, cut like the rows, or else at any separator.
+Names names_of(std::string_view line, const RowFormat& format, std::size_t n_columns) {
+  std::vector<std::string_view> columns;
+  while (line.starts_with('/') || line.starts_with('#')) line.remove_prefix(1);
+  split_row(line, format.separator, columns);
+  Names names(columns.begin(), columns.end());
+  if (names.size() == n_columns) return names;
+  Names others;
+  for (std::string_view column; next_column(line, column);) others.emplace_back(column);
+  return others.size() == n_columns ? others : names;
 }
 
-void assign_by_name(const Names& names, std::array<std::size_t, 3> position, TextLayout& layout) {
-  layout.position = position;
-  layout.color = find_triple(names, {"red", "green", "blue"});
-  if (!layout.color) layout.color = find_triple(names, {"r", "g", "b"});
+/// The last comment that names as many columns as there are, coordinates among them.
+std::optional<Names> commented_names(const TextStart& start, std::size_t n_columns) {
+  for (auto comment = start.comments.rbegin(); comment != start.comments.rend(); ++comment) {
+    Names names = names_of(comment->text, start.format, n_columns);
+    if (names.size() == n_columns && find_point_names(names).position) return names;
+  }
+  return std::nullopt;
 }
 
-void assign_by_place(bool has_header, TextLayout& layout, FileInfo& info) {
-  const std::size_t n = layout.columns;
-  if (has_header)
-    info.notes.emplace_back("the header line does not name x, y and z: taken to be the first three columns");
-  if (n == 6) {
-    layout.color = {3, 4, 5};
-    info.notes.emplace_back("columns 4 to 6 taken as red, green and blue");
-  } else if (n > 3) {
-    info.notes.push_back(fmt::format("column{} ignored; a header line such as 'x y z r g b' would say what {} hold{}",
-                                     n == 4 ? " 4" : fmt::format("s 4 to {}", n), n == 4 ? "it" : "they",
-                                     n == 4 ? "s" : ""));
+[[noreturn]] void fail_without_position(const ByteSource& source, const TextLine& header, const Names& names) {
+  if (names_splats(names)) {
+    source.fail("line {}: holds Gaussian splats (f_dc_*), not points with colors", header.number);
   }
+  if (names_degrees(names)) {
+    source.fail("line {}: the points are given as longitude and latitude; project them to meters first", header.number);
+  }
+  source.fail("line {}: the header names no coordinates (x y z, easting northing height): {}", header.number,
+              listed(names));
+}
+
+void assign_by_names(const Names& names, TextLayout& layout, FileInfo& info) {
+  const PointNames found = find_point_names(names);
+  layout.position = *found.position;
+  layout.color = found.color;
+  if (!found.color && found.n_color_channels > 0) {
+    info.notes.push_back(
+        fmt::format("no color taken: only {} of the three columns red, green, blue present", found.n_color_channels));
+  }
+  note_units(names, layout.position, info);
+  Names unused;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto is_i = [i](std::size_t column) { return column == i; };
+    const bool used = std::ranges::any_of(layout.position, is_i) || (layout.color && std::ranges::any_of(*layout.color, is_i));
+    if (!used) unused.push_back(names[i]);
+  }
+  note_unused(unused, "columns", info);
+}
+
+bool is_pts(const ByteSource& source) {
+  std::string extension = std::filesystem::path(source.name()).extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  return extension == ".pts";
 }
 
 }  // namespace
 
-bool next_column(std::string_view& line, std::string_view& column) {
-  line = skip_blanks(line);
-  if (line.empty()) return false;
-  std::size_t end = 0;
-  while (end < line.size() && !is_blank(line[end]) && !is_separator(line[end])) ++end;
-  column = line.substr(0, end);
-  line = skip_blanks(line.substr(end));
-  if (!line.empty() && is_separator(line.front())) line.remove_prefix(1);
-  return true;
-}
-
-std::vector<std::string> split_columns(std::string_view line) {
-  std::vector<std::string> columns;
-  for (std::string_view column; next_column(line, column);) columns.emplace_back(column);
-  return columns;
-}
-
-bool names_axes(const std::vector<std::string>& names) { return find_triple(names, kAxes).has_value(); }
-
-TextLayout text_layout(const LineReader& lines, const Names& names, std::string_view first, FileInfo& info) {
-  if (first.find(';') != std::string_view::npos && first.find(',') != std::string_view::npos) {
-    lines.fail("mixes ';' and ','; decimal commas cannot be read");
-  }
+TextLayout text_layout(const ByteSource& source, const TextStart& start, FileInfo& info) {
+  const NumberTable table = number_table(start);
+  const std::uint64_t first_row = start.rows.front().number;
   TextLayout layout;
-  layout.columns = split_columns(first).size();
-  if (layout.columns < 3) lines.fail("{} columns; at least x y z expected", layout.columns);
-  if (!names.empty() && names.size() != layout.columns) {
-    lines.fail("{} columns, but the header line names {}", layout.columns, names.size());
+  layout.columns = table.columns;
+  if (start.header) {
+    const Names names = names_of(start.header->text, start.format, table.columns);
+    if (!find_point_names(names).position) fail_without_position(source, *start.header, names);
+    if (names.size() != table.columns) {
+      source.fail("line {}: {} columns, but the header line names {}", first_row, table.columns, names.size());
+    }
+    assign_by_names(names, layout, info);
+    return layout;
   }
-  if (const auto position = find_triple(names, kAxes)) {
-    assign_by_name(names, *position, layout);
-  } else {
-    assign_by_place(!names.empty(), layout, info);
+  if (table.columns < 3) source.fail("line {}: {} columns; at least x y z expected", first_row, table.columns);
+  if (const auto names = commented_names(start, table.columns)) {
+    assign_by_names(*names, layout, info);
+    return layout;
   }
+  layout.color = find_unnamed_colors(table, is_pts(source), info);
   return layout;
 }
 

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 
 #include "io/ascii_rows.hpp"
 #include "io/format_readers.hpp"
@@ -9,131 +8,96 @@
 namespace cmap {
 namespace {
 
-/// Decides over a whole file whether its colors are 0..255 or [0,1]: by whether any value is above 1.
-class ColorScale {
+/// The rows of a file: first those that its start has read, then the rest.
+class TextRows {
  public:
-  /// Takes note of one value. Throws InputError if it fits neither scale.
-  void see(const LineReader& lines, double value) {
-    if (!std::isfinite(value)) return;  // the point will be dropped
-    if (value < 0.0 || value > 255.0) {
-      lines.fail("color {:g}; 0 to 255 or 0 to 1 expected (if these columns are no colors, name them in a header line)",
-                 value);
-    }
-    if (value > 1.0 && above_one_ == 0) above_one_ = lines.number();
-    if (value != std::trunc(value) && fraction_ == 0) fraction_ = lines.number();
-  }
+  TextRows(LineReader& lines, const TextStart& start) : lines_(lines), start_(start) {}
 
-  /// Turns 0..255 into Rgb8 and leaves [0,1] as it is.
-  void apply(const ByteSource& source, Colors& colors, FileInfo& info) const {
-    if (above_one_ == 0) {
-      info.notes.emplace_back("colors taken as [0,1]: no value above 1");
-      return;
+  /// The next line that is neither blank nor a comment; false at the end.
+  bool next(std::string_view& line) {
+    if (next_of_start_ < start_.rows.size()) {
+      number_ = start_.rows[next_of_start_].number;
+      line = start_.rows[next_of_start_++].text;
+      return true;
     }
-    if (fraction_ > 0) {
-      source.fail("line {} has a color above 1 and line {} a fraction: neither 0 to 255 nor 0 to 1", above_one_,
-                  fraction_);
-    }
-    info.notes.emplace_back("colors taken as 0 to 255: values above 1");
-    const auto& wide = std::get<Array<RgbF>>(colors);
-    Array<Rgb8> narrow(wide.size());
-    std::transform(wide.begin(), wide.end(), narrow.begin(), [](const RgbF& color) {
-      return Rgb8{static_cast<std::uint8_t>(color[0]), static_cast<std::uint8_t>(color[1]),
-                  static_cast<std::uint8_t>(color[2])};
-    });
-    colors = std::move(narrow);
+    if (start_.whole) return false;
+    do {
+      if (!lines_.next(line)) return false;
+    } while (is_blank_line(line) || is_comment_line(line));
+    number_ = lines_.number();
+    return true;
   }
+  std::uint64_t number() const { return number_; }
 
  private:
-  std::uint64_t above_one_ = 0;  // lines; 0: none so far
-  std::uint64_t fraction_ = 0;
+  LineReader& lines_;
+  const TextStart& start_;
+  std::size_t next_of_start_ = 0;
+  std::uint64_t number_ = 0;
 };
-
-/// The first line of numbers, and the names of the columns if a line before it has them.
-struct Start {
-  std::vector<std::string> names;
-  std::string_view line;
-};
-
-bool is_comment(std::string_view line) { return line.starts_with('#') || line.starts_with("//"); }
-
-bool is_empty(std::string_view line) {
-  return std::all_of(line.begin(), line.end(), [](char c) { return is_blank(c); });
-}
-
-std::string_view without_comment_mark(std::string_view line) {
-  return line.substr(std::min(line.size(), line.find_first_not_of("#/")));
-}
-
-std::string_view without_byte_order_mark(std::string_view line) {
-  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-  if (line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
-  return line;
-}
-
-Start find_start(LineReader& lines) {
-  Start start;
-  bool has_header = false;
-  std::vector<std::string> comment;
-  while (lines.next(start.line)) {
-    if (lines.number() == 1) start.line = without_byte_order_mark(start.line);
-    if (is_empty(start.line)) continue;
-    if (is_comment(start.line)) {
-      std::vector<std::string> names = split_columns(without_comment_mark(start.line));
-      if (names_axes(names)) comment = std::move(names);
-      continue;
-    }
-    std::vector<std::string> columns = split_columns(start.line);
-    double number = 0.0;
-    if (parse_number(columns.front(), number)) {
-      if (!has_header && comment.size() == columns.size()) start.names = std::move(comment);
-      return start;
-    }
-    if (has_header) {
-      lines.fail("'{}' is not a number (taken for text, x y z [r g b], as no other format was recognized)",
-                 columns.front().substr(0, 40));
-    }
-    start.names = std::move(columns);
-    has_header = true;
-  }
-  lines.source().fail("holds no line of numbers");
-}
 
 class TextParser {
  public:
-  TextParser(const LineReader& lines, const TextLayout& layout) : lines_(lines), layout_(layout) {}
+  TextParser(const ByteSource& source, const RowFormat& format, const TextLayout& layout)
+      : source_(source), format_(format), layout_(layout) {}
 
-  RowStage::Row parse(std::string_view line) {
-    columns_.clear();
-    for (std::string_view column; next_column(line, column);) columns_.push_back(column);
+  /// False for a line that holds one number alone: the count of another block of points.
+  bool parse(std::string_view line, std::uint64_t number, RowStage::Row& row) {
+    split_row(line, format_.separator, columns_);
+    if (columns_.size() == 1 && layout_.columns > 1) return false;
     if (columns_.size() != layout_.columns) {
-      lines_.fail("{} columns where {} were expected", columns_.size(), layout_.columns);
+      source_.fail("line {}: {} columns where {} were expected", number, columns_.size(), layout_.columns);
     }
-    RowStage::Row row{};
-    for (std::size_t k = 0; k < 3; ++k) row.xyz[k] = number(layout_.position[k]);
+    for (std::size_t k = 0; k < 3; ++k) row.xyz[k] = value_of(layout_.position[k], number);
     if (layout_.color) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        row.rgb[k] = number((*layout_.color)[k]);
-        scale_.see(lines_, row.rgb[k]);
-      }
+      for (std::size_t k = 0; k < 3; ++k) row.rgb[k] = value_of((*layout_.color)[k], number);
     }
-    return row;
+    return true;
   }
 
-  const ColorScale& scale() const { return scale_; }
-
  private:
-  double number(std::size_t column) const {
+  double value_of(std::size_t column, std::uint64_t number) const {
     double value = 0.0;
-    if (!parse_number(columns_[column], value)) {
-      lines_.fail("column {}: '{}' is not a number", column + 1, columns_[column].substr(0, 40));
+    if (!parse_column(columns_[column], format_, value)) {
+      source_.fail("line {}: column {}: '{}' is not a number", number, column + 1, columns_[column].substr(0, 40));
     }
     return value;
   }
 
-  const LineReader& lines_;
+  const ByteSource& source_;
+  const RowFormat& format_;
   const TextLayout& layout_;
   std::vector<std::string_view> columns_;
-  ColorScale scale_;
+};
+
+/// Holds the counts that a file announces against the rows that follow them.
+class BlockCount {
+ public:
+  BlockCount(const ByteSource& source, std::optional<std::uint64_t> announced) : source_(source), announced_(announced) {}
+
+  void add_row() { ++rows_; }
+  /// A line within the rows that may be the next block's count.
+  void begin(std::string_view line, std::uint64_t line_number) {
+    unsigned long long count = 0;
+    if (!announced_ || rows_ != *announced_ || !parse_number(next_token(line), count)) {
+      source_.fail("line {}: 1 column, but the rows before it have more", line_number);
+    }
+    announced_ = count;
+    rows_ = 0;
+  }
+  void finish(FileInfo& info) const {
+    if (!announced_ || rows_ == *announced_) return;
+    if (rows_ < *announced_) {
+      source_.fail("truncated: a line announces {} points, but {} follow it", *announced_, rows_);
+    }
+    info.notes.push_back(fmt::format("a line announces {} points, but {} more follow it; all were read", *announced_,
+                                     rows_ - *announced_));
+  }
+
+ private:
+  const ByteSource& source_;
+  std::optional<std::uint64_t> announced_;
+  std::uint64_t rows_ = 0;
 };
 
 }  // namespace
@@ -141,21 +105,28 @@ class TextParser {
 PointCloud read_text(ByteSource& source, FileInfo& info) {
   info.format = "text";
   LineReader lines(source);
-  const Start start = find_start(lines);
-  const TextLayout layout = text_layout(lines, start.names, start.line, info);
-  const ColorStorage color = layout.color ? ColorStorage::kAnyFloat : ColorStorage::kNone;
+  const TextStart start = read_text_start(lines);
+  const TextLayout layout = text_layout(source, start, info);
+  if (start.format.decimal_comma) info.notes.emplace_back("commas taken as decimal ones");
+  const ColorDeclaration color{layout.color ? ColorStorage::kSeparate : ColorStorage::kNone};
   // Each column takes a digit and a separator at least.
-  CloudBuilder builder(source, {true, color, {"red", "green", "blue"}}, source.size() / (2 * layout.columns) + 1);
-  RowStage stage(builder, color);
-  TextParser parser(lines, layout);
-  std::string_view line = start.line;
-  do {
-    if (!is_empty(line) && !is_comment(line)) stage.add(parser.parse(line));
-  } while (lines.next(line));
+  CloudBuilder builder(source, {true, color}, source.size() / (2 * layout.columns) + 1);
+  RowStage stage(builder, layout.color.has_value());
+  TextParser parser(source, start.format, layout);
+  TextRows rows(lines, start);
+  BlockCount blocks(source, start.count);
+  RowStage::Row row{};
+  for (std::string_view line; rows.next(line);) {
+    if (!parser.parse(line, rows.number(), row)) {
+      blocks.begin(line, rows.number());
+      continue;
+    }
+    stage.add(row);
+    blocks.add_row();
+  }
   stage.flush();
-  PointCloud cloud = builder.finish(info);
-  if (layout.color) parser.scale().apply(source, cloud.colors, info);
-  return cloud;
+  blocks.finish(info);
+  return builder.finish(info);
 }
 
 }  // namespace cmap

@@ -94,7 +94,7 @@ TEST(LasReader, EightBitColorsInSixteenBitFields) {
   EXPECT_EQ(file.cloud.colors, Colors(Array<Rgb16>{{0, 128, 255}, {1, 256, 3}}));
   EXPECT_TRUE(file.info.notes.empty());
   las.colors = {{0, 0, 0}, {0, 0, 0}};
-  EXPECT_THAT(all_notes(read_content("a.las", las.file().str())), HasSubstr("all colors are black"));
+  EXPECT_FALSE(read_content("a.las", las.file().str()).cloud.has_color());
 }
 
 TEST(LasReader, RefusesLazWithTheCommandThatConvertsIt) {
@@ -126,7 +126,7 @@ TEST(LasReader, BadHeaders) {
       {las.file().set(107, 4294967295U).str(), "truncated: 4294967295 points"},
       {las.file().set(107, 0U).str(), "holds no points"},
       {Las{.minor = 4}.file().set(247, ~std::uint64_t{0}).str(), "truncated: 18446744073709551615 points"},
-      {las.file().set(155, 1e300).str(), "point 1: x = 1e+300 is beyond"},
+      {las.file().set(155, 1e300).str(), "none of its 1 points is finite; 1 left out: no return"},
       {las.file().set(131, 1e308).set(155, 1e308).str(), "none of its 1 points is finite"},
   };
   for (const auto& [content, message] : kCases) EXPECT_THAT(refusal("bad.las", content), HasSubstr(message));

@@ -122,6 +122,48 @@ TEST(PcdReader, OrganizedCloudsAndViewpoints) {
   EXPECT_EQ(file.info.finite_points, 3U);
   EXPECT_EQ(point(file, 0), Eigen::Vector3d(1, 2, 3)) << "the viewpoint is not applied";
   EXPECT_THAT(all_notes(file), HasSubstr("VIEWPOINT"));
+  ASSERT_EQ(file.info.sensor_positions.size(), 1U);
+  EXPECT_EQ(file.info.sensor_positions[0], Eigen::Vector3d(0, 0, 1));
+}
+
+TEST(PcdReader, UpperCaseFieldsWithColorsOfAnyType) {
+  Header header{.fields = "X Y Z Red Green Blue", .sizes = "4 4 4 2 2 2", .types = "F F F U U U", .counts = "1 1 1 1 1 1"};
+  EXPECT_EQ(read_content("a.pcd", header.str() + "1 2 3 10 20 30\n").cloud.colors, Colors(Array<Rgb8>{{10, 20, 30}}));
+  header.sizes = "4 4 4 4 4 4";
+  for (const char* types : {"F F F I I I", "F F F F F F", "F F F U U U"}) {
+    header.types = types;
+    EXPECT_EQ(read_content("a.pcd", header.str() + "1 2 3 10 20 255\n").cloud.colors, Colors(Array<Rgb8>{{10, 20, 255}}));
+  }
+}
+
+TEST(PcdReader, FieldsOfCountZeroTakeNoRoom) {
+  Header header{.fields = "x y z _ t", .sizes = "4 4 4 1 2", .types = "F F F U U", .counts = "1 1 1 0 1"};
+  EXPECT_EQ(point(read_content("a.pcd", header.str() + "1 2 3 7\n"), 0), Eigen::Vector3d(1, 2, 3));
+  header.data = "binary";
+  EXPECT_EQ(point(read_content("a.pcd", Bytes(header.str()).put(1.0F, 2.0F, 3.0F, U16{7}).str()), 0), Eigen::Vector3d(1, 2, 3));
+}
+
+TEST(PcdReader, PackedColorsLostAsNanAreNoColors) {
+  const Header header = with_points(kPacked, 2);
+  // The float with the bits 0x00c8141e, to nine digits.
+  const auto file = read_content("a.pcd", header.str() + "1 2 3 nan\n4 5 6 1.83743159e-38\n");
+  ASSERT_EQ(file.cloud.size(), 2U);
+  const auto& colors = std::get<Array<RgbF>>(file.cloud.colors);
+  EXPECT_TRUE(std::isnan(colors[0][0]) && std::isnan(colors[0][1]) && std::isnan(colors[0][2]));
+  EXPECT_NEAR(colors[1][0] * 255.0F, 200.0F, 1e-4F);
+  EXPECT_NEAR(colors[1][2] * 255.0F, 30.0F, 1e-4F);
+  ASSERT_EQ(file.info.warnings.size(), 1U);
+  EXPECT_THAT(file.info.warnings[0].message, HasSubstr("1 of 2 points have no color"));
+  EXPECT_FALSE(read_content("a.pcd", header.str() + "1 2 3 nan\n4 5 6 nan\n").cloud.has_color());
+}
+
+TEST(PcdReader, WhatFollowsThePointsIsSaidOrRefused) {
+  const std::string rows = Header{}.str() + "1 2 3\n4 5 6\n";
+  EXPECT_THAT(all_notes(read_content("a.pcd", rows)), HasSubstr("1 more lines follow"));
+  const Bytes binary = Bytes(with_data({}, "binary").str()).put(1.0F, 2.0F, 3.0F);
+  EXPECT_THAT(refusal("a.pcd", Bytes(binary.str()).put(4.0F).str()), HasSubstr("4 bytes are left over"));
+  EXPECT_EQ(read_content("a.pcd", Bytes(binary.str()).text("\n").str()).cloud.size(), 1U);
+  EXPECT_THAT(all_notes(read_content("a.pcd", Bytes(binary.str()).put(std::uint64_t{0}).str())), HasSubstr("8 bytes of nothing"));
 }
 
 TEST(PcdReader, HeaderWithoutCommentsCountsOrPoints) {
@@ -145,7 +187,7 @@ TEST(PcdReader, BadHeaders) {
       {Header{.sizes = "4 4 3"}.str(), "'z' has unknown TYPE F of SIZE 3"},
       {Header{.types = "F F Q"}.str(), "'z' has unknown TYPE Q of SIZE 4"},
       {Header{.sizes = "4 4 -4"}.str(), "'-4' is not a whole number"},
-      {Header{.counts = "1 1 0"}.str(), "'z' has COUNT 0"},
+      {Header{.counts = "1 1 0"}.str(), "'z' is not a single number"},
       {Header{.counts = "1 1 2"}.str(), "'z' is not a single number"},
       {Header{.counts = "1 1 99999999999"}.str(), "COUNT 99999999999"},
       {Header{.fields = "x y i"}.str(), "no field 'z'"},

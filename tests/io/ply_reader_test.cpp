@@ -31,11 +31,83 @@ TEST(PlyReader, Ascii) {
   EXPECT_TRUE(file.info.notes.empty());
 }
 
-TEST(PlyReader, CrlfLineEnds) {
-  std::string text = header("ascii", vertices(1, kXyz)) + "1 2 3\n";
-  std::string crlf;
-  for (const char c : text) crlf += c == '\n' ? "\r\n" : std::string(1, c);
-  EXPECT_EQ(point(read_content("a.ply", crlf), 0), Eigen::Vector3d(1, 2, 3));
+std::string with_line_ends(std::string_view text, std::string_view end) {
+  std::string other;
+  for (const char c : text) other += c == '\n' ? std::string(end) : std::string(1, c);
+  return other;
+}
+
+TEST(PlyReader, LineEndsAndByteOrderMark) {
+  const std::string ascii = header("ascii", vertices(1, kXyz)), binary = header("binary_little_endian", vertices(1, kXyz));
+  // The body begins with the byte of a line feed: it belongs to the number, not to the header's last line.
+  const std::string body = Bytes().put(0.0F, 2.0F, 3.0F).set(0, '\n').str();
+  for (const std::string_view end : {"\n", "\r\n", "\r"}) {
+    for (const std::string_view mark : {"", "\xef\xbb\xbf"}) {
+      EXPECT_EQ(point(read_content("a.ply", std::string(mark) + with_line_ends(ascii + "1 2 3\n", end)), 0),
+                Eigen::Vector3d(1, 2, 3));
+      const auto file = read_content("a.ply", std::string(mark) + with_line_ends(binary, end) + body);
+      EXPECT_EQ(point(file, 0).tail<2>(), Eigen::Vector2d(2, 3));
+    }
+  }
+}
+
+TEST(PlyReader, NamesInAnyCaseAndTypesThatAreNotNeeded) {
+  const std::string properties =
+      "property double X\nproperty double Y\nproperty double Z\nproperty bool seen\nproperty uchar Red\n"
+      "property uchar Green\nproperty uchar Blue\nproperty int64 stamp\n";
+  Bytes bytes(header("binary_little_endian", vertices(1, properties)));
+  bytes.put(1.0, 2.0, 3.0, U8{1}, U8{10}, U8{20}, U8{30}, std::int64_t{5});
+  const auto file = read_content("a.ply", bytes.str());
+  EXPECT_EQ(point(file, 0), Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(file.cloud.colors, Colors(Array<Rgb8>{{10, 20, 30}}));
+  EXPECT_THAT(all_notes(file), HasSubstr("fields not used: seen, stamp"));
+}
+
+TEST(PlyReader, BytesLeftOverAreAnError) {
+  // A property that the header leaves out: every point is one byte longer than it says.
+  Bytes bytes(header("binary_little_endian", vertices(3, kXyz + kRgb)));
+  for (int i = 0; i < 3; ++i) bytes.put(static_cast<float>(i), 2.0F, 3.0F, U8{1}, U8{2}, U8{3}, U8{255});
+  EXPECT_THAT(refusal("a.ply", bytes.str()), HasSubstr("3 bytes are left over after all that the header says, exactly 1 a point"));
+  Bytes one(header("binary_little_endian", vertices(1, kXyz)));
+  one.put(1.0F, 2.0F, 3.0F);
+  EXPECT_EQ(read_content("a.ply", Bytes(one.str()).text("\n").str()).cloud.size(), 1U) << "a line end is no point";
+  EXPECT_THAT(refusal("a.ply", Bytes(one.str()).put(4.0F, 5.0F, 6.0F).str()), HasSubstr("exactly 12 a point"));
+}
+
+TEST(PlyReader, RowsBeyondTheCountAreSaid) {
+  const auto file = read_content("a.ply", header("ascii", vertices(1, kXyz)) + "1 2 3\n4 5 6\n\n7 8 9\n");
+  EXPECT_EQ(file.cloud.size(), 1U);
+  EXPECT_THAT(all_notes(file), HasSubstr("2 more lines follow"));
+}
+
+std::string warnings_of(const PointCloudFile& file) {
+  std::string text;
+  for (const Warning& warning : file.info.warnings) text += warning.id + ": " + warning.message + "\n";
+  return text;
+}
+
+TEST(PlyReader, MeshesAreNamed) {
+  const std::string face = "element face 2\nproperty list uchar int vertex_indices\n";
+  const std::string colored = face + "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  const std::string points = "0 0 0\n1 0 0\n0 1 0\n";
+  EXPECT_THAT(warnings_of(read_content("a.ply", header("ascii", vertices(3, kXyz) + face) + points + "3 0 1 2\n3 2 1 0\n")),
+              HasSubstr("mesh of 2 faces"));
+  EXPECT_THAT(warnings_of(read_content("a.ply", header("ascii", vertices(3, kXyz) + colored) + points +
+                                                    "3 0 1 2 9 9 9\n3 2 1 0 9 9 9\n")),
+              HasSubstr("only the faces of the mesh have colors"));
+}
+
+TEST(PlyReader, AFileThatEndsWithinItsFacesIsSaid) {
+  const std::string face = "element face 2\nproperty list uchar int vertex_indices\n";
+  Bytes bytes(header("binary_little_endian", vertices(1, kXyz) + face));
+  bytes.put(1.0F, 2.0F, 3.0F, U8{3}, 0, 0, 0, U8{3}, 0, 0, 0);
+  EXPECT_THAT(warnings_of(read_content("a.ply", bytes.str())), ::testing::Not(HasSubstr("ends early")));
+  for (std::size_t missing = 1; missing <= 26; ++missing) {
+    const auto file = read_content("a.ply", bytes.str().substr(0, bytes.str().size() - missing));
+    EXPECT_THAT(warnings_of(file), HasSubstr(missing <= 13 ? "after 1 of 2 rows of 'face'" : "after 0 of 2 rows of 'face'"));
+  }
+  EXPECT_THAT(warnings_of(read_content("a.ply", header("ascii", vertices(1, kXyz) + face) + "1 2 3\n3 0 0 0\n")),
+              HasSubstr("after 1 of 2 rows of 'face'"));
 }
 
 TEST(PlyReader, BinaryOfBothByteOrders) {
@@ -84,7 +156,8 @@ TEST(PlyReader, ListsAndForeignElementsAreSteppedOver) {
     bytes.put(U8{3}, 1, 2, 3, 0.5F).put(U8{0}, 0.5F).put(500.0);
     bytes.put(1.0F, U16{2}, 8.0, 9.0, 2.0F, U8{1}, U8{77}, 3.0F, U8{1}, U8{2}, U8{3});
     bytes.put(4.0F, U16{0}, 5.0F, U8{0}, 6.0F, U8{4}, U8{5}, U8{6});
-    const auto file = read_content("l.ply", bytes.str());
+    EXPECT_THAT(refusal("l.ply", bytes.str()), HasSubstr("truncated: 1 rows of element 'edge'"));
+    const auto file = read_content("l.ply", bytes.put(7).str());
     EXPECT_EQ(point(file, 0), Eigen::Vector3d(1, 2, 3));
     EXPECT_EQ(point(file, 1), Eigen::Vector3d(4, 5, 6));
     EXPECT_EQ(file.cloud.colors, Colors(Array<Rgb8>{{1, 2, 3}, {4, 5, 6}}));
@@ -127,14 +200,6 @@ TEST(PlyReader, NonFinitePointsAreDroppedAndCounted) {
     ASSERT_EQ(file.cloud.positions[i].x(), static_cast<float>(original));
     ASSERT_EQ(colors[i][0], static_cast<U8>(original));
   }
-}
-
-TEST(PlyReader, NonFiniteFloatColorDropsThePoint) {
-  const std::string colors = "property float red\nproperty float green\nproperty float blue\n";
-  const auto file = read_content("n.ply", header("ascii", vertices(2, kXyz + colors)) + "1 2 3 nan 0 0\n4 5 6 0 0 1\n");
-  ASSERT_EQ(file.info.finite_points, 1U);
-  EXPECT_EQ(point(file, 0), Eigen::Vector3d(4, 5, 6));
-  EXPECT_EQ(file.cloud.colors, Colors(Array<RgbF>{{0.0F, 0.0F, 1.0F}}));
 }
 
 TEST(PlyReader, FloatCoordinatesNearZeroStayAsTheyAre) {
@@ -196,7 +261,7 @@ TEST(PlyReader, BadHeaders) {
       {"ply\nformat ascii 2.0\nend_header\n", "line 2: PLY version '2.0'"},
       {"ply\nformat middle 1.0\nend_header\n", "line 2: PLY format 'middle'"},
       {"ply\nelement vertex 1\n" + kXyz + "end_header\n1 2 3\n", "without a line 'format'"},
-      {header("ascii", vertices(1, kXyz + "property long n\n")), "line 7: unknown property type 'long'"},
+      {header("ascii", vertices(1, kXyz + "property long n\n")), "line 7: unknown property type 'long' in element 'vertex'"},
       {header("ascii", "element vertex -1\n" + kXyz), "line 3: '-1' is not the number of elements 'vertex'"},
       {header("ascii", "element vertex 1e3\n" + kXyz), "line 3: '1e3'"},
       {header("ascii", "property float x\n"), "line 3: a property before any element"},
@@ -207,10 +272,6 @@ TEST(PlyReader, BadHeaders) {
       {header("ascii", vertices(1, "property list uchar float x\nproperty float y\nproperty float z\n")),
        "'x' is not a single number"},
       {header("ascii", vertices(1, "property list float float x\n")), "line 4: the length of a list"},
-      {header("ascii", vertices(1, kXyz + "property int red\nproperty int green\nproperty int blue\n")),
-       "color 'red' has type int32"},
-      {header("ascii", vertices(1, kXyz + "property uchar red\nproperty ushort green\nproperty uchar blue\n")),
-       "'green' has another type"},
       {header("ascii", vertices(1, kXyz + "property float f_dc_0\n")), "Gaussian splats"},
       {header("ascii", "wibble\n"), "line 3: unknown PLY keyword 'wibble'"},
       {header("ascii", vertices(0, kXyz)), "holds no points"},
@@ -229,20 +290,11 @@ TEST(PlyReader, BadAsciiBodies) {
       {xyz + "1 x 3\n4 5 6\n", "line 8: 'y': 'x' is not a number"},
       {xyz + "1 1,5 3\n4 5 6\n", "line 8: 'y': '1,5' is not a number"},
       {xyz + "nan nan nan\n1 inf 2\n", "none of its 2 points is finite"},
-      {xyz + "1 2 3\n1e13 0 0\n", "point 2: x = 1e+13 is beyond"},
       {colored + "1 2 3 256 0 0\n", "line 11: 'red': '256' is not of type uint8"},
       {colored + "1 2 3 0 -1 0\n", "'green': '-1' is not of type uint8"},
       {colored + "1 2 3 0 0 0.5\n", "'blue': '0.5' is not of type uint8"},
   };
   for (const auto& [content, message] : kCases) EXPECT_THAT(refusal("bad.ply", content), HasSubstr(message));
-}
-
-TEST(PlyReader, FloatColorsOutOfRangeNameFieldAndPoint) {
-  const std::string colors = "property float r\nproperty float g\nproperty float b\n";
-  EXPECT_THAT(refusal("c.ply", header("ascii", vertices(2, kXyz + colors)) + "1 2 3 0 0 0\n1 2 3 0 128 0\n"),
-              ::testing::AllOf(HasSubstr("point 2: g = 128"), HasSubstr("[0,1]"), HasSubstr("uchar")));
-  EXPECT_THAT(refusal("c.ply", header("ascii", vertices(1, kXyz + colors)) + "1 2 3 0 0 -0.5\n"),
-              HasSubstr("b = -0.5"));
 }
 
 TEST(PlyReader, TruncatedBinaryBodies) {

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {
@@ -7,7 +9,7 @@ using ::testing::HasSubstr;
 
 TEST(TextReader, EverySeparator) {
   for (const char* text : {"1 2 3\n4 5 6\n", "1,2,3\n4,5,6\n", "1;2;3\n4;5;6\n", "1\t2\t3\n4\t5\t6",
-                           "1, 2 ,3\r\n4 , 5,6\r\n", " 1  2 3,\n\n4 5 6 ,\n",
+                           "1, 2 ,3\r\n4 , 5,6\r\n", " 1,  2, 3,\n\n4,5,6 ,\n", "1 2 3\r4 5 6\r", "1 2 3\r\r4 5 6",
                            "\xef\xbb\xbf"
                            "1 2 3\n4 5 6\n"}) {
     const auto file = read_content("a.xyz", text);
@@ -48,8 +50,47 @@ TEST(TextReader, HeaderWithNormalsTakesNoColor) {
 
 TEST(TextReader, UnnamedColumnsAreNoted) {
   EXPECT_THAT(all_notes(read_content("a.xyz", "1 2 3 0.5\n")), HasSubstr("column 4 ignored"));
-  EXPECT_THAT(all_notes(read_content("a.xyz", "1 2 3 0 9 8 7\n")), HasSubstr("columns 4 to 7 ignored"));
-  EXPECT_THAT(all_notes(read_content("a.xyz", "east north up\n1 2 3\n")), HasSubstr("does not name x, y and z"));
+  EXPECT_THAT(all_notes(read_content("a.xyz", "1 2 3 0 9 8 -7\n")), HasSubstr("columns 4 to 7 ignored"));
+}
+
+TEST(TextReader, HeadersInUse) {
+  // What CloudCompare, survey programs, a LiDAR viewer and pandas write above one and the same point.
+  for (const char* text :
+       {"//X Y Z R G B\n1\n1 2 3 10 20 30\n", "# ID EASTING NORTHING HEIGHT R G B\n7 1 2 3 10 20 30\n",
+        "Easting\tNorthing\tHeight\tRed\tGreen\tBlue\n1\t2\t3\t10\t20\t30\n",
+        "Slot ID,Error Code,X,Y,Z,Red,Green,Blue\n1,0,1,2,3,10,20,30\n", ",x,y,z,red,green,blue\n0,1,2,3,10,20,30\n",
+        "X [m];Y [m];Z [m];Intensity;R;G;B\n1;2;3;;10;20;30\n", "X,Y,Z,Classification,R,G,B\n1,2,3,tree,10,20,30\n"}) {
+    const auto file = read_content("a.csv", text);
+    EXPECT_EQ(point(file, 0), Eigen::Vector3d(1, 2, 3)) << text;
+    EXPECT_EQ(file.cloud.colors, Colors(Array<Rgb8>{{10, 20, 30}})) << text;
+  }
+  const auto unit = read_content("a.txt", "//X Y Z Rf Gf Bf\n1 2 3 0.5 1 0\n");
+  EXPECT_EQ(unit.cloud.colors, Colors(Array<RgbF>{{0.5F, 1.0F, 0.0F}}));
+}
+
+TEST(TextReader, ColumnsNotUsedAreSaid) {
+  EXPECT_THAT(all_notes(read_content("a.csv", "x,y,z,intensity,time\n1,2,3,4,5\n")), HasSubstr("not used: intensity, time"));
+}
+
+TEST(TextReader, DecimalCommas) {
+  for (const char* text : {"1,5\t2\t-3,25\n4\t5\t6\n", "1,5;2;-3,25\n4;5;6\n", "1,5 2,0 -3,25\n4 5 6\n"}) {
+    const auto file = read_content("a.txt", text);
+    ASSERT_EQ(file.cloud.size(), 2U) << text;
+    EXPECT_EQ(point(file, 0), Eigen::Vector3d(1.5, 2, -3.25)) << text;
+    EXPECT_THAT(all_notes(file), HasSubstr("decimal"));
+  }
+}
+
+TEST(TextReader, CountLines) {
+  for (const char* name : {"a.pts", "a.txt", "a.xyz"}) {
+    const auto file = read_content(name, "2\n1 2 3 -1200 10 20 30\n4 5 6 -900 40 50 60\n");
+    ASSERT_EQ(file.cloud.size(), 2U);
+    EXPECT_EQ(point(file, 1), Eigen::Vector3d(4, 5, 6));
+    EXPECT_EQ(file.cloud.colors, Colors(Array<Rgb8>{{10, 20, 30}, {40, 50, 60}}));
+  }
+  const auto blocks = read_content("a.pts", "2\n1 2 3\n4 5 6\n1\n7 8 9\n");
+  EXPECT_EQ(blocks.cloud.size(), 3U);
+  EXPECT_THAT(all_notes(read_content("a.pts", "1\n1 2 3\n4 5 6\n")), HasSubstr("announces 1 points, but 1 more"));
 }
 
 TEST(TextReader, CoordinatesAreDouble) {
@@ -58,10 +99,23 @@ TEST(TextReader, CoordinatesAreDouble) {
 }
 
 TEST(TextReader, NonFinitePointsAreDroppedAndCounted) {
-  const auto file = read_content("a.xyz", "nan 2 3 1 2 3\n1 2 3 1 nan 3\n1 2 3 4 5 6\n");
+  const auto file = read_content("a.xyz", "nan 2 3 1 2 3\n1 inf 3 1 2 3\n1 2 3 4 5 6\n");
   EXPECT_EQ(file.info.points, 3U);
   ASSERT_EQ(file.info.finite_points, 1U);
   EXPECT_EQ(file.cloud.colors, Colors(Array<Rgb8>{{4, 5, 6}}));
+}
+
+TEST(TextReader, WhatNoSensorMeasuredIsLeftOutAndCounted) {
+  std::string text = "1e9 2 3\n1 2 3.4028235e38\n-2 -3 -1000000001\n";
+  for (int i = 0; i < 40; ++i) text += fmt::format("{} 2 3\n0 0 0\n", i + 600000);
+  const auto file = read_content("a.xyz", text);
+  EXPECT_EQ(file.info.points, 83U);
+  ASSERT_EQ(file.cloud.size(), 40U);
+  EXPECT_EQ(point(file, 39), Eigen::Vector3d(600039, 2, 3));
+  EXPECT_GT(file.cloud.origin.x(), 5e5) << "points at 0 0 0 do not choose the origin";
+  EXPECT_THAT(all_notes(file), ::testing::AllOf(HasSubstr("3 of 83 points left out"), HasSubstr("40 of 83 points left out")));
+  // One point at zero is a point like any other.
+  EXPECT_EQ(read_content("a.xyz", "0 0 0\n1 2 3\n").cloud.size(), 2U);
 }
 
 TEST(TextReader, DoesNotDependOnTheLocale) {
@@ -92,15 +146,19 @@ TEST(TextReader, BadLines) {
       {"x y z\nfoo bar baz\n", "line 2: 'foo' is not a number"},
       {"x y z r\n1 2 3\n", "line 2: 3 columns, but the header line names 4"},
       {"1,,3\n4,5,6\n", "line 1: column 2: '' is not a number"},
-      {"1,5;2,5;3,5\n", "line 1: mixes ';' and ','"},
-      {"1 2 3 4 5 256\n", "line 1: color 256"},
-      {"1 2 3 0 0 -1\n", "line 1: color -1"},
-      {"1 2 3 0.5 0 0\n1 2 3 200 0 0\n", "line 2 has a color above 1 and line 1 a fraction"},
+      {"1.5;2,5;3,5\n", "line 1: mixes ';' and ','; decimal commas"},
+      {"1,2 3,4.5\n", "line 1: mixes ',' and blanks; decimal commas"},
+      {"x y z r g b\n1 2 3 0 0 70000\n", "point 1: blue = 70000"},
+      {"x y z r g b\n1 2 3 0 0 -1\n", "point 1: blue = -1"},
+      {"a,b,c\n1,2,3\n", "line 1: the header names no coordinates"},
+      {"lat,lon,height\n1,2,3\n", "longitude and latitude"},
+      {"3\n1 2 3\n4 5 6\n", "truncated: a line announces 3 points, but 2 follow"},
+      {"1 2 3\n4 5 6\n7\n", "line 3: 1 column"},
       {"# only a comment\n", "holds no line of numbers"},
       {"x y z\n", "holds no line of numbers"},
       {"\n\n", "holds no line of numbers"},
       {"nan nan nan\n", "none of its 1 points is finite"},
-      {"0 0 1e15\n", "point 1: z = 1e+15 is beyond"},
+      {"0 0 1e15\n", "none of its 1 points is finite; 1 left out: no return"},
   };
   for (const auto& [content, message] : kCases) EXPECT_THAT(refusal("bad.xyz", content), HasSubstr(message)) << content;
 }

@@ -32,6 +32,7 @@ struct FileInfo {
   std::uint64_t finite_points = 0;  ///< kept
   std::vector<LeftOut> left_out;    ///< in the order in which the reasons came up
   std::string color_scale;          ///< what the color numbers mean: "0 to 255", "16 bit", ...; empty without color
+  bool gray_colors = false;         ///< every color seen has equal channels
   std::string sha256;               ///< lowercase hex; empty unless asked for
   std::vector<std::string> notes;   ///< what was decided on the user's behalf: "8-bit colors in 16-bit fields", ...
   std::vector<Warning> warnings;    ///< what is probably wrong
@@ -45,12 +46,14 @@ struct PointCloudFile {
   FileInfo info;
 };
 
-/// Reads a point cloud of any format of FORMATS (PLY, PCD, LAS, NPY, NPZ, text), recognized by content first, extension second.
-/// Points that are not finite, in position or in a float color, are dropped and counted; colors stay as stored; the
-/// origin is choose_origin() of the bounds. Float files near zero keep their floats exactly; a pipe is read into
-/// memory. Thread-safe. Throws InputError naming file, place (line, byte or field) and reason: missing or unreadable
-/// file, unknown format, malformed or truncated content, a coordinate beyond kMaxCoordinate_m, a float color outside
-/// [0,1], no finite point.
+/// Reads a point cloud of any format of FORMATS (PLY, PCD, LAS, NPY, NPZ, text), recognized by content first, extension
+/// second. Points that are not finite are dropped and counted, and so are those that no sensor measured (a coordinate
+/// of 1e9 or more; many points exactly at 0 0 0). What the color numbers mean is decided over the whole file and said
+/// in `info`: 8- and 16-bit colors stay integers, others become floats in [0,1], a point without one (NaN) keeps NaN;
+/// nothing but black is no color. The origin is choose_origin() of the bounds. Float files near zero keep their floats
+/// exactly; a pipe is read into memory. Thread-safe. Throws InputError naming file, place (line, byte, point or field)
+/// and reason: missing or unreadable file, unknown format, malformed or truncated content, bytes left over, a number
+/// that no color has, no finite point.
 PointCloudFile read_point_cloud(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Two files at once, each in a thread of its own. Throws what the first would throw, else the second.

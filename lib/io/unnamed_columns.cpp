@@ -1,0 +1,139 @@
+#include "io/unnamed_columns.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+namespace cmap {
+namespace {
+
+/// What may follow x y z: r red, green and blue; n a normal; a alpha; i intensity.
+constexpr std::string_view kLayouts[] = {"r", "n", "ra", "ir", "rn", "nr", "irn", "ran", "nra", "nri", "ni", "in"};
+
+std::size_t width_of(char role) { return role == 'r' || role == 'n' ? 3 : 1; }
+
+std::size_t width_of(std::string_view layout) {
+  std::size_t width = 0;
+  for (const char role : layout) width += width_of(role);
+  return width;
+}
+
+/// What three neighboring columns hold, over all rows.
+struct Triple {
+  double lowest = 0.0, highest = 0.0;
+  bool fractions = false;
+  bool unit_or_zero = true;  ///< the length of every row is 1 (as far as few digits say) or 0
+};
+
+Triple measure(const NumberTable& table, std::size_t first) {
+  constexpr double kTolerance = 0.02;  // three numbers of two digits after the point
+  Triple triple;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    double sq_length = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double v = table.at(row, first + k);
+      if (!std::isfinite(v)) continue;
+      triple.lowest = std::min(triple.lowest, v);
+      triple.highest = std::max(triple.highest, v);
+      triple.fractions = triple.fractions || v != std::floor(v);
+      sq_length += v * v;
+    }
+    triple.unit_or_zero = triple.unit_or_zero && (sq_length == 0.0 || std::abs(std::sqrt(sq_length) - 1.0) < kTolerance);
+  }
+  return triple;
+}
+
+bool may_be_color(const Triple& t) {
+  constexpr double kHighest = 65535.0;
+  if (t.lowest < 0.0 || t.highest > kHighest || t.highest == 0.0) return false;
+  return !(t.unit_or_zero && t.fractions);  // colors would not all have length 1
+}
+
+bool may_be_alpha(const NumberTable& table, std::size_t column) {
+  const double first = table.at(0, column);
+  if (first != 1.0 && first != 255.0 && first != 65535.0) return false;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    if (table.at(row, column) != first) return false;
+  }
+  return true;
+}
+
+bool fits(const NumberTable& table, std::string_view layout) {
+  if (width_of(layout) + 3 != table.columns) return false;
+  std::size_t column = 3;
+  for (const char role : layout) {
+    const bool fit = role == 'r'   ? may_be_color(measure(table, column))
+                     : role == 'n' ? measure(table, column).unit_or_zero
+                     : role == 'a' ? may_be_alpha(table, column)
+                                   : true;
+    if (!fit) return false;
+    column += width_of(role);
+  }
+  return true;
+}
+
+/// Of several layouts those with this role, if there are any: a column that is alpha throughout would be a strange blue
+/// or intensity, but for a kind of file that has intensities.
+void prefer(char role, std::vector<std::string_view>& layouts) {
+  const auto lacks = [role](std::string_view layout) { return layout.find(role) == std::string_view::npos; };
+  if (!std::all_of(layouts.begin(), layouts.end(), lacks)) std::erase_if(layouts, lacks);
+}
+
+std::size_t place_of_color(std::string_view layout) {
+  const std::size_t at = layout.find('r');
+  return at == std::string_view::npos ? 0 : 3 + width_of(layout.substr(0, at));
+}
+
+std::string column_range(std::size_t first, std::size_t last) {
+  return first == last ? fmt::format("column {}", first) : fmt::format("columns {} to {}", first, last);
+}
+
+void note_ignored(const NumberTable& table, FileInfo& info) {
+  const bool one = table.columns == 4;
+  info.notes.push_back(fmt::format("{} ignored; a header line such as 'x y z r g b' would say what {}",
+                                   column_range(4, table.columns), one ? "it holds" : "they hold"));
+}
+
+void note_others(const NumberTable& table, std::size_t color, FileInfo& info) {
+  std::vector<std::string> unused;
+  if (color > 3) unused.push_back(column_range(4, color));
+  if (color + 3 < table.columns) unused.push_back(column_range(color + 4, table.columns));
+  for (const std::string& columns : unused) info.notes.push_back(columns + " not used");
+}
+
+}  // namespace
+
+std::optional<ColumnTriple> find_unnamed_colors(const NumberTable& table, bool intensity_first, FileInfo& info) {
+  if (table.columns <= 3 || table.rows() == 0) return std::nullopt;
+  std::vector<std::string_view> fitting;
+  for (const std::string_view layout : kLayouts) {
+    if (fits(table, layout)) fitting.push_back(layout);
+  }
+  if (fitting.size() > 1) prefer(intensity_first ? 'i' : 'a', fitting);
+  if (fitting.empty()) {
+    note_ignored(table, info);
+    return std::nullopt;
+  }
+  if (fitting.size() > 1) {
+    info.warnings.push_back(
+        {"undecidable_columns", fmt::format("no color taken: {} may be colors or normals; a header line such as "
+                                            "'x y z r g b' or 'x y z nx ny nz' would say which",
+                                            column_range(4, table.columns))});
+    return std::nullopt;
+  }
+  const std::size_t color = place_of_color(fitting[0]);
+  if (color == 0) {
+    info.notes.push_back(fmt::format("no color: {} taken as a normal{}", column_range(4, table.columns),
+                                     measure(table, 3).highest == 0.0 && measure(table, 3).lowest == 0.0
+                                         ? " that is zero throughout"
+                                         : ""));
+    return std::nullopt;
+  }
+  info.notes.push_back(fmt::format("columns {} to {} taken as red, green and blue", color + 1, color + 3));
+  note_others(table, color, info);
+  return ColumnTriple{color, color + 1, color + 2};
+}
+
+}  // namespace cmap

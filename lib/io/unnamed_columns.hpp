@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cmap/io/point_cloud_file.hpp"
+#include "io/point_names.hpp"
+
+namespace cmap {
+
+/// The first rows of a table of numbers; what is no number is NaN.
+struct NumberTable {
+  std::size_t columns = 0;
+  std::vector<double> values;  ///< row by row
+
+  std::size_t rows() const { return columns == 0 ? 0 : values.size() / columns; }
+  double at(std::size_t row, std::size_t column) const { return values[row * columns + column]; }
+};
+
+/// Which columns after x y z are red, green and blue, where no names say so: decided by the numbers among the layouts
+/// in use (colors, normals, intensity and alpha in several orders); `intensity_first`: the file's kind (PTS) has the
+/// intensity before the color. None, and a note or a warning in `info`, where there are none or it cannot be told.
+std::optional<ColumnTriple> find_unnamed_colors(const NumberTable& table, bool intensity_first, FileInfo& info);
+
+}  // namespace cmap
