@@ -16,7 +16,8 @@ constexpr const char* kDescription =
     "Finds the transform T_dst_src that moves a point-cloud map SRC onto another, DST, in the frame of DST.\n"
     "Methods, from a start near enough (--initial, or the identity): icp (point to point), plane, gicp (all rigid),\n"
     "sim3 (with scale, held near the start's at first), tanksandtemples (that benchmark's refinement and scores);\n"
-    "without a start: global (rigid, or with --scale). trajectory: SRC and DST are TUM files, paired by time.";
+    "without a start: global (rigid, or with --scale). trajectory: SRC and DST are poses (TUM, EuRoC, KITTI, or\n"
+    "columns that a header line names), paired by time.";
 
 constexpr const char* kExample =
     "Example:\n"
@@ -27,7 +28,7 @@ constexpr const char* kExample =
     "error.";
 
 struct Arguments {
-  std::string source, target, method = "gicp", initial, output, json, fit = "sim3";
+  std::string source, target, method = "gicp", initial, times, output, json, fit = "sim3";
   double voxel_m = 0.0, max_distance_m = 0.0, tau_m = 0.0, max_gap_s = 0.15;
   bool scale = false;
   cmap::CommonArguments common;
@@ -58,8 +59,10 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("--max-gap", a.max_gap_s, "poses farther apart are not interpolated between [0.15]")
       ->type_name("S")
       ->check(positive);
+  app.add_option("--times", a.times, "times of poses that have none (KITTI), one number of seconds a line")
+      ->type_name("FILE");
   cmap::add_common_options(app, a.common, "no table and no warnings");
-  cmap::refuse_empty(app, {"--output", "--json", "--initial"});
+  cmap::refuse_empty(app, {"--output", "--json", "--initial", "--times"});
 }
 
 /// Options that the method would ignore are refused: they do not do what their giver thinks.
@@ -79,6 +82,7 @@ void refuse_unused(const CLI::App& app, const std::string& method) {
   refuse("--tau", {"tanksandtemples"});
   refuse("--fit", {"trajectory"});
   refuse("--max-gap", {"trajectory"});
+  refuse("--times", {"trajectory"});
 }
 
 struct Result {
@@ -87,19 +91,30 @@ struct Result {
   std::string scores;  ///< further lines of the table
 };
 
+/// What was said of the inputs comes before what the alignment says.
+void add_warnings(const std::vector<cmap::Warning>& of_input, cmap::Alignment& alignment) {
+  std::vector<std::string> messages;
+  for (const cmap::Warning& warning : of_input) messages.push_back(warning.message);
+  alignment.warnings.insert(alignment.warnings.begin(), messages.begin(), messages.end());
+}
+
 Result align_trajectories(const Arguments& a) {
-  const cmap::Trajectory source = cmap::read_tum_trajectory(a.source), target = cmap::read_tum_trajectory(a.target);
-  Result result{cmap::align_trajectories(source, target, cmap::trajectory_fit_from_name(a.fit), a.max_gap_s), {}, {}};
+  const auto [source, target] = cmap::read_trajectory_pair(a.source, a.target, cmap::path_if_given(a.times));
+  const cmap::TrajectoryFit fit = cmap::trajectory_fit_from_name(a.fit);
+  Result result{cmap::align_trajectories(source.poses, target.poses, fit, a.max_gap_s), {}, {}};
+  add_warnings(target.warnings, result.alignment);
+  add_warnings(source.warnings, result.alignment);
   result.json = cmap::alignment_json(result.alignment);
   return result;
 }
 
 Result run_tanks_and_temples(const Arguments& a, const cmap::PointCloud& source, const cmap::PointCloud& target,
-                             const Eigen::Matrix4d& T_initial) {
+                             const Eigen::Matrix4d& T_initial, const std::vector<cmap::Warning>& warnings) {
   cmap::TanksAndTemplesOptions options;
   if (!(a.tau_m > 0.0)) throw cmap::UsageError("--method tanksandtemples needs the scene's --tau");
   options.tau_m = a.tau_m;
-  const cmap::TanksAndTemplesResult found = cmap::tanks_and_temples(source, target, T_initial, options);
+  cmap::TanksAndTemplesResult found = cmap::tanks_and_temples(source, target, T_initial, options);
+  add_warnings(warnings, found.alignment);
   Result result{found.alignment, cmap::alignment_json(found.alignment), {}};
   result.json["tau_m"] = a.tau_m;
   result.json["precision"] = found.precision;
@@ -112,13 +127,17 @@ Result run_tanks_and_temples(const Arguments& a, const cmap::PointCloud& source,
 
 Result align_maps(const Arguments& a) {
   cmap::AlignOptions options;
-  options.T_initial = cmap::transform_or_identity(a.initial);
+  std::vector<cmap::Warning> warnings;
+  options.T_initial = cmap::transform_or_identity(a.initial, warnings);
   if (a.voxel_m > 0.0) options.voxel_m = a.voxel_m;
   if (a.max_distance_m > 0.0) options.max_distance_m = a.max_distance_m;
   options.with_scale = a.scale;
   const auto [source, target] = cmap::read_both(a.source, a.target);
-  if (a.method == "tanksandtemples") return run_tanks_and_temples(a, source.cloud, target.cloud, options.T_initial);
+  if (a.method == "tanksandtemples") {
+    return run_tanks_and_temples(a, source.cloud, target.cloud, options.T_initial, warnings);
+  }
   Result result{cmap::align(source.cloud, target.cloud, cmap::align_method_from_name(a.method), options), {}, {}};
+  add_warnings(warnings, result.alignment);
   result.json = cmap::alignment_json(result.alignment);
   return result;
 }
@@ -151,7 +170,7 @@ void deliver(const Arguments& a, const Result& result) {
 cmap::ExitCode run(const CLI::App& app, const Arguments& a) {
   const cmap::ThreadLimit limit(a.common.threads);
   refuse_unused(app, a.method);
-  cmap::refuse_overwriting({a.source, a.target, a.initial}, {a.output, a.json});
+  cmap::refuse_overwriting({a.source, a.target, a.initial, a.times}, {a.output, a.json});
   for (const std::string& output : {a.output, a.json}) cmap::require_writable(output);
   deliver(a, a.method == "trajectory" ? align_trajectories(a) : align_maps(a));
   return cmap::ExitCode::kDone;

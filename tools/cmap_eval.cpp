@@ -42,7 +42,7 @@ constexpr const char* kExample =
 struct Arguments {
   std::string reference, estimate;
   std::string output, html, figure, format = "table", config, preset, transform, initial;
-  std::string reference_trajectory, estimate_trajectory, sensor;
+  std::string reference_trajectory, estimate_trajectory, times, sensor;
   std::string estimate_errors, reference_errors;
   std::vector<std::string> requirements;
   cmap::EvaluationArguments evaluation;
@@ -70,13 +70,15 @@ void add_options(CLI::App& app, Arguments& a) {
       ->type_name("FILE");
   app.add_option("--initial", a.initial, "the same as the place where --align begins")->type_name("FILE");
   app.add_option("--ref-trajectory", a.reference_trajectory,
-                 "TUM file of the reference's poses, for --align trajectory")
+                 "the reference's poses (TUM, EuRoC, KITTI, or named columns), for --align trajectory")
       ->type_name("FILE");
-  app.add_option("--est-trajectory", a.estimate_trajectory, "TUM file of the estimate's poses, at the same times")
+  app.add_option("--est-trajectory", a.estimate_trajectory, "the estimate's poses, at the same times")
+      ->type_name("FILE");
+  app.add_option("--times", a.times, "times of poses that have none (KITTI), one number of seconds a line")
       ->type_name("FILE");
   app.add_option(
          "--observed-from", a.sensor,
-         "where the estimate's sensor was: TUM file, or a capture with its scans and lio.tum, in the estimate's "
+         "where the estimate's sensor was: poses, or a capture with its scans and lio.tum, in the estimate's "
          "frame; means --observed sensor")
       ->type_name("FILE|DIR");
   app.add_option("--require", a.requirements, "exit 1 unless it holds: LCR>=0.2, accuracy@0.1<=0.06; repeatable")
@@ -90,7 +92,7 @@ void add_options(CLI::App& app, Arguments& a) {
   cmap::add_common_options(app, a.common, "no table, no progress");
   cmap::refuse_empty(
       app, {"--output", "--html", "--figure", "--config", "--preset", "--transform", "--initial", "--ref-trajectory",
-            "--est-trajectory", "--observed-from", "--export-errors", "--export-reference-errors"});
+            "--est-trajectory", "--times", "--observed-from", "--export-errors", "--export-reference-errors"});
   a.evaluation.add_to(app, [](std::string_view) { return true; });
 }
 
@@ -107,12 +109,31 @@ cmap::EvaluationOptions resolve_options(const Arguments& arguments) {
   return options;
 }
 
-/// The poses of a TUM file, or where the scanner of a capture was.
-std::vector<Eigen::Vector3d> sensor_positions(const std::string& path) {
-  if (std::filesystem::is_directory(path)) return cmap::scanner_positions(cmap::open_capture(path));
+void append(const std::vector<cmap::Warning>& more, std::vector<cmap::Warning>& warnings) {
+  warnings.insert(warnings.end(), more.begin(), more.end());
+}
+
+/// The poses of a file, or where the scanner of a capture was.
+std::vector<Eigen::Vector3d> sensor_positions(const std::string& path, std::vector<cmap::Warning>& warnings) {
+  if (std::filesystem::is_directory(path)) {
+    const cmap::Capture capture = cmap::open_capture(path);
+    append(capture.warnings, warnings);
+    return cmap::scanner_positions(capture);
+  }
+  const cmap::TrajectoryFile file = cmap::read_trajectory(path);
+  append(file.warnings, warnings);
   std::vector<Eigen::Vector3d> positions;
-  for (const cmap::StampedPose& pose : cmap::read_tum_trajectory(path)) positions.push_back(pose.position);
+  for (const cmap::StampedPose& pose : file.poses) positions.push_back(pose.position);
   return positions;
+}
+
+void read_trajectories(const Arguments& a, cmap::ProtocolInputs& inputs) {
+  auto [reference, estimate] =
+      cmap::read_trajectory_pair(a.reference_trajectory, a.estimate_trajectory, cmap::path_if_given(a.times));
+  append(reference.warnings, inputs.warnings);
+  append(estimate.warnings, inputs.warnings);
+  inputs.reference_trajectory = std::move(reference.poses);
+  inputs.estimate_trajectory = std::move(estimate.poses);
 }
 
 /// Files that only another option would read are mistakes.
@@ -125,13 +146,11 @@ cmap::ProtocolInputs protocol_inputs(const Arguments& a, const cmap::EvaluationO
       (!by_trajectories && !(a.reference_trajectory.empty() && a.estimate_trajectory.empty()))) {
     throw cmap::UsageError("--align trajectory needs --ref-trajectory and --est-trajectory, and they need it");
   }
+  if (!by_trajectories && !a.times.empty()) throw cmap::UsageError("--times needs --align trajectory");
   cmap::ProtocolInputs inputs;
-  inputs.T_initial = cmap::transform_or_identity(a.initial.empty() ? a.transform : a.initial);
-  if (by_trajectories) {
-    inputs.reference_trajectory = cmap::read_tum_trajectory(a.reference_trajectory);
-    inputs.estimate_trajectory = cmap::read_tum_trajectory(a.estimate_trajectory);
-  }
-  if (!a.sensor.empty()) inputs.sensor_positions = sensor_positions(a.sensor);
+  inputs.T_initial = cmap::transform_or_identity(a.initial.empty() ? a.transform : a.initial, inputs.warnings);
+  if (by_trajectories) read_trajectories(a, inputs);
+  if (!a.sensor.empty()) inputs.sensor_positions = sensor_positions(a.sensor, inputs.warnings);
   return inputs;
 }
 
@@ -192,7 +211,7 @@ ExitCode run(const Arguments& arguments, const std::string& command) {
                            std::string(cmap::simd_level_name(cmap::simd_level()))};
   cmap::refuse_overwriting(
       {arguments.reference, arguments.estimate, arguments.config, arguments.transform, arguments.initial,
-       arguments.reference_trajectory, arguments.estimate_trajectory, arguments.sensor},
+       arguments.reference_trajectory, arguments.estimate_trajectory, arguments.times, arguments.sensor},
       arguments.outputs());
   check_outputs(arguments);
   std::optional<cmap::FigureModule> figures;

@@ -211,7 +211,9 @@ cmap::EvaluationOptions evaluation_options(const Arguments& a, const Plan& plan,
 }
 
 void draw_pair(const Arguments& a, const Plan& plan, cmap::ProgressBar& progress) {
-  const Eigen::Matrix4d T_ref_est = cmap::transform_or_identity(a.transform);
+  std::vector<cmap::Warning> warnings;
+  const Eigen::Matrix4d T_ref_est = cmap::transform_or_identity(a.transform, warnings);
+  if (!a.common.quiet) cmap::print_warnings(warnings);
   progress.update("read", 0.0);
   auto [reference, estimate] = cmap::read_both(a.map, a.estimate);
   const bool has_color = reference.cloud.has_color() && estimate.cloud.has_color();

@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/Core>
+#include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,9 +35,21 @@ inline void refuse_overwriting(std::vector<std::string> inputs, const std::vecto
   }
 }
 
-/// The identity where no file was given.
-inline Eigen::Matrix4d transform_or_identity(const std::string& path) {
-  return path.empty() ? Eigen::Matrix4d::Identity().eval() : read_transform(path);
+/// The identity where no file was given; what is said of a file is added to `warnings`.
+inline Eigen::Matrix4d transform_or_identity(const std::string& path, std::vector<Warning>& warnings) {
+  if (path.empty()) return Eigen::Matrix4d::Identity();
+  const TransformFile file = read_transform(path);
+  warnings.insert(warnings.end(), file.warnings.begin(), file.warnings.end());
+  return file.T;
+}
+
+/// For programs whose results have no place for warnings.
+inline void print_warnings(const std::vector<Warning>& warnings) {
+  for (const Warning& warning : warnings) fmt::print(stderr, "warning: {}\n", warning.message);
+}
+
+inline std::optional<std::filesystem::path> path_if_given(const std::string& path) {
+  return path.empty() ? std::nullopt : std::optional<std::filesystem::path>(path);
 }
 
 }  // namespace cmap

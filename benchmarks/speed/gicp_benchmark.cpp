@@ -34,7 +34,7 @@ std::filesystem::path data_folder() {
 Pair lidar_pair() {
   const auto folder = data_folder() / "small_gicp/data";
   return {cmap::read_point_cloud(folder / "source.ply").cloud, cmap::read_point_cloud(folder / "target.ply").cloud,
-          cmap::similarity_from(cmap::read_transform(folder / "T_target_source.txt")), 0.2, 2.0};
+          cmap::similarity_from(cmap::read_transform(folder / "T_target_source.txt").T), 0.2, 2.0};
 }
 
 /// The aerial map against itself, turned by a degree and moved by a meter.

@@ -86,6 +86,7 @@ Evaluation evaluate_by_protocol(PointCloud reference, PointCloud estimate, const
   for (Eigen::Vector3d& p : sensor_positions) p = (T_ref_est * p.homogeneous()).head<3>();
   Evaluation evaluation =
       evaluate(std::move(reference), std::move(estimate), options, T_ref_est, progress, sensor_positions);
+  evaluation.warnings.insert(evaluation.warnings.begin(), inputs.warnings.begin(), inputs.warnings.end());
   if (alignment) warn_of_alignment(*alignment, evaluation.warnings);
   evaluation.alignment = std::move(alignment);
   evaluation.metrics_before = std::move(before);

@@ -49,6 +49,13 @@ std::vector<ImuSample> read_imu(const fs::path& path, double unit_mps2, double o
   return samples;
 }
 
+Trajectory read_lio(const fs::path& path, std::vector<Warning>& warnings) {
+  TrajectoryFile file = read_trajectory(path);
+  if (!file.has_times) throw InputError(path.string() + ": poses without times; time x y z qx qy qz qw expected");
+  warnings.insert(warnings.end(), file.warnings.begin(), file.warnings.end());
+  return std::move(file.poses);
+}
+
 /// Folders, and NPZ files; other files belong to these. What ends in .partial was never finished.
 std::vector<fs::path> find_sessions(const fs::path& folder, std::vector<Warning>& warnings) {
   std::vector<fs::path> sessions;
@@ -80,7 +87,7 @@ Capture open_capture(const fs::path& folder) {
     capture.imu =
         read_imu(folder / "imu.csv", description.acceleration_unit_mps2, capture.calibration.imu_time_offset_s);
   }
-  if (fs::exists(folder / "lio.tum")) capture.lio = read_tum_trajectory(folder / "lio.tum");
+  if (fs::exists(folder / "lio.tum")) capture.lio = read_lio(folder / "lio.tum", capture.warnings);
   capture.sessions = find_sessions(folder / "predictions", capture.warnings);
   return capture;
 }

@@ -17,8 +17,12 @@ inline std::string_view next_token(std::string_view& text) {
   return token;
 }
 
-/// The whole token as a number, whatever the locale; "nan" and "inf" are numbers, a leading '+' is allowed. A number
-/// beyond the type's range becomes infinite, one below it zero. False if the token is anything else.
+/// A line up to its comment: the first '#' but for those within MSVC's numbers that are none (1.#QNAN).
+std::string_view without_comment(std::string_view line);
+
+/// The whole token as a number, whatever the locale; "nan" and "inf" are numbers, also as MSVC writes them (1.#QNAN,
+/// -1.#IND, 1.#INF, nan(ind)), a leading '+' is allowed. A number beyond the type's range becomes infinite, one below
+/// it zero. False if the token is anything else.
 bool parse_number(std::string_view token, double& value);
 bool parse_number(std::string_view token, float& value);
 bool parse_number(std::string_view token, unsigned long long& value);

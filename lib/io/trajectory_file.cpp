@@ -1,137 +1,115 @@
 #include "cmap/io/trajectory_file.hpp"
 
-#include <array>
+#include <fmt/format.h>
+
 #include <cmath>
 
-#include "cmap/io/output_file.hpp"
-#include "io/line_reader.hpp"
-#include "io/number_text.hpp"
-#include "io/rotation_check.hpp"
-#include "io/text_layout.hpp"
+#include "io/trajectory_order.hpp"
+#include "io/trajectory_rows.hpp"
 
 namespace cmap {
 namespace {
 
-/// Shorter ones have no direction that their digits could give.
-constexpr double kShortestQuaternion = 1e-6;
-
-StampedPose pose_of(const LineReader& lines, const std::array<double, 8>& v) {
-  StampedPose pose{v[0], {v[1], v[2], v[3]}, Eigen::Quaterniond(v[7], v[4], v[5], v[6])};
-  const double length = pose.rotation.norm();
-  if (!(length > kShortestQuaternion)) lines.fail("the quaternion has length {:g}", length);
-  pose.rotation.coeffs() /= length;
-  return pose;
-}
-
-/// What a line holds, for messages.
-struct LineKind {
-  std::string_view name, order;
-};
-
-/// False on a line without numbers.
-template <std::size_t n_values>
-bool parse_line(const LineReader& lines, std::string_view line, const LineKind& kind,
-                std::array<double, n_values>& values) {
-  line = line.substr(0, line.find('#'));
-  std::size_t n = 0;
-  for (std::string_view token; next_column(line, token); ++n) {
-    double value = 0.0;
-    if (!parse_number(token, value)) lines.fail("'{}' is not a number", token.substr(0, 40));
-    if (!std::isfinite(value)) lines.fail("'{}' is not finite", token.substr(0, 40));
-    if (n == n_values) lines.fail("more than the {} numbers of {}: {}", n_values, kind.name, kind.order);
-    values[n] = value;
-  }
-  if (n != 0 && n != n_values) lines.fail("{} numbers; {} has {}: {}", n, kind.name, n_values, kind.order);
-  return n != 0;
-}
-
-void require_later(const LineReader& lines, double time_s, double last_s) {
-  if (!(time_s > last_s)) lines.fail("time {} s is not after the {} s before it", time_s, last_s);
+void tell_left_out(const TrajectoryRows& rows, const std::string& name, std::vector<Warning>& warnings) {
+  const auto tell = [&](std::size_t n, const char* reason) {
+    if (n == 0) return;
+    warnings.push_back({"trajectory_rows_left_out",
+                        fmt::format("{}: {} of {} rows left out: {} (lost tracking?)", name, n, rows.n_rows, reason)});
+  };
+  tell(rows.n_not_finite, "not finite");
+  tell(rows.n_zero_rotation, "a quaternion of zero");
 }
 
 std::vector<double> read_times(const std::filesystem::path& path) {
   ByteSource source(path);
-  LineReader lines(source);
-  std::vector<double> times_s;
-  std::string_view line;
-  std::array<double, 1> time_s{};
-  while (lines.next(line)) {
-    if (!parse_line(lines, line, {"a line", "seconds"}, time_s)) continue;
-    if (!times_s.empty()) require_later(lines, time_s[0], times_s.back());
-    times_s.push_back(time_s[0]);
-  }
-  return times_s;
-}
-
-StampedPose pose_of_matrix(const LineReader& lines, const double* rows) {
-  const Eigen::Matrix<double, 3, 4> matrix = Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(rows);
-  const double deviation = deviation_from_rotation(matrix.leftCols<3>());
-  if (!(deviation <= kRotationTolerance)) {
-    lines.fail("the matrix deviates by {:g} from a rotation; {:g} accepted", deviation, kRotationTolerance);
-  }
-  return {0.0, matrix.col(3), Eigen::Quaterniond(nearest_rotation(matrix.leftCols<3>()))};
-}
-
-/// Poses as matrices of 3 or 4 rows; their times are still missing.
-template <std::size_t n_values>
-Trajectory read_matrices(const std::filesystem::path& path) {
-  ByteSource source(path);
-  LineReader lines(source);
-  Trajectory trajectory;
-  std::string_view line;
-  std::array<double, n_values> values{};
-  while (lines.next(line)) {
-    if (!parse_line(lines, line, {"a pose", "the rows of its matrix"}, values)) continue;
-    if constexpr (n_values == 16) {
-      const Eigen::Map<const Eigen::RowVector4d> last(values.data() + 12);
-      if (last != Eigen::RowVector4d(0, 0, 0, 1)) lines.fail("the last row of the matrix is not 0 0 0 1");
+  refuse_other_than_poses(source);
+  RowReader reader(source);
+  std::vector<double> times;
+  while (reader.next()) {
+    if (reader.cells().size() != 1) {
+      reader.lines().fail("{} numbers; one a line expected, the time of each pose", reader.cells().size());
     }
-    trajectory.push_back(pose_of_matrix(lines, values.data()));
+    times.push_back(reader.number(0));
   }
-  if (trajectory.empty()) source.fail("no pose in the file");
-  return trajectory;
+  return times;
 }
 
-void set_times(Trajectory& trajectory, const std::filesystem::path& path) {
-  const std::vector<double> times_s = read_times(path);
-  if (times_s.size() != trajectory.size()) {
-    throw InputError(fmt::format("{}: {} times for {} poses", path.string(), times_s.size(), trajectory.size()));
+/// Poses of which a row's index is known get that row's time; without a finite one they are left out.
+void set_times(TrajectoryRows& rows, const std::string& name, const std::filesystem::path& path) {
+  const std::vector<double> times = read_times(path);
+  if (times.size() != rows.n_rows) {
+    throw InputError(fmt::format("{}: {} times for the {} poses of {}", path.string(), times.size(), rows.n_rows, name));
   }
-  for (std::size_t i = 0; i < times_s.size(); ++i) trajectory[i].time_s = times_s[i];
+  const std::size_t n_before = rows.poses.size();
+  std::erase_if(rows.poses, [&](StampedPose& pose) {
+    pose.time_s = times[static_cast<std::size_t>(pose.time_s)];
+    return !std::isfinite(pose.time_s);
+  });
+  rows.n_not_finite += n_before - rows.poses.size();
+  rows.has_times = true;
+}
+
+TrajectoryFile finish(TrajectoryRows rows, const std::string& name) {
+  TrajectoryFile file{{}, rows.has_times, rows.n_rows, {}};
+  if (rows.poses.empty()) {
+    throw InputError(fmt::format("{}: none of its {} rows is a pose: {} not finite, {} with a quaternion of zero", name,
+                                 rows.n_rows, rows.n_not_finite, rows.n_zero_rotation));
+  }
+  tell_left_out(rows, name, file.warnings);
+  file.poses = std::move(rows.poses);
+  if (!file.has_times) return file;
+  const double units_per_s = times_to_seconds(file.poses, rows.units_per_s, name, file.warnings);
+  if (rows.assumed_order && units_per_s == 1e9) {
+    file.warnings.push_back({"trajectory_quaternion_order",
+                             name + ": no header line names the columns: the quaternion is read as x y z w, as in TUM "
+                                    "files; EuRoC's have w first"});
+  }
+  put_in_order(file.poses, name, file.warnings);
+  return file;
+}
+
+[[noreturn]] void refuse_without_times(const std::filesystem::path& path, const TrajectoryRows& rows) {
+  throw InputError(fmt::format("{}: {} poses without times (KITTI's layout); --times FILE gives them, one a line",
+                               path.string(), rows.n_rows));
+}
+
+TrajectoryRows read_rows_of(const std::filesystem::path& path) {
+  ByteSource source(path);
+  return read_trajectory_rows(source);
 }
 
 }  // namespace
 
-Trajectory read_tum_trajectory(const std::filesystem::path& path) {
+TrajectoryFile parse_trajectory(ByteSource& source) {
+  return finish(read_trajectory_rows(source), source.name());
+}
+
+TrajectoryFile read_trajectory(const std::filesystem::path& path) {
   ByteSource source(path);
-  LineReader lines(source);
-  Trajectory trajectory;
-  std::string_view line;
-  std::array<double, 8> values{};
-  while (lines.next(line)) {
-    if (!parse_line(lines, line, {"a pose", "time x y z qx qy qz qw"}, values)) continue;
-    const StampedPose pose = pose_of(lines, values);
-    if (!trajectory.empty()) require_later(lines, pose.time_s, trajectory.back().time_s);
-    trajectory.push_back(pose);
-  }
-  if (trajectory.empty()) source.fail("no pose in the file");
-  return trajectory;
+  return parse_trajectory(source);
 }
 
-Trajectory read_kitti_trajectory(const std::filesystem::path& poses, const std::filesystem::path& times) {
-  Trajectory trajectory = read_matrices<12>(poses);
-  set_times(trajectory, times);
-  return trajectory;
-}
-
-Trajectory read_camera_poses(const std::filesystem::path& poses, const std::optional<std::filesystem::path>& times) {
-  Trajectory trajectory = read_matrices<16>(poses);
-  if (times) {
-    set_times(trajectory, *times);
-  } else {
-    for (std::size_t i = 0; i < trajectory.size(); ++i) trajectory[i].time_s = static_cast<double>(i);
+std::pair<TrajectoryFile, TrajectoryFile> read_trajectory_pair(const std::filesystem::path& first,
+                                                               const std::filesystem::path& second,
+                                                               const std::optional<std::filesystem::path>& times) {
+  TrajectoryRows first_rows = read_rows_of(first), second_rows = read_rows_of(second);
+  const bool paired_by_row = !times && !first_rows.has_times && !second_rows.has_times;
+  if (times && first_rows.has_times && second_rows.has_times) {
+    throw UsageError(fmt::format("{}: not needed, both trajectories hold their times", times->string()));
   }
-  return trajectory;
+  for (const auto& [path, rows] : {std::pair(&first, &first_rows), std::pair(&second, &second_rows)}) {
+    if (rows->has_times) continue;
+    if (times) set_times(*rows, path->string(), *times);
+    if (!times && (!paired_by_row || first_rows.n_rows != second_rows.n_rows)) refuse_without_times(*path, *rows);
+  }
+  std::pair<TrajectoryFile, TrajectoryFile> pair{finish(std::move(first_rows), first.string()),
+                                                 finish(std::move(second_rows), second.string())};
+  if (paired_by_row) {
+    pair.first.warnings.push_back(
+        {"trajectory_paired_by_row", fmt::format("{} and {} hold no times: their {} poses are paired row by row",
+                                                 first.string(), second.string(), pair.first.rows)});
+  }
+  return pair;
 }
 
 void write_tum_trajectory(const Trajectory& trajectory, const std::filesystem::path& path) {

@@ -150,7 +150,7 @@ Json make_report(const InputDescription& reference, const InputDescription& esti
   add_input_warnings(report["warnings"], "reference", reference);
   add_input_warnings(report["warnings"], "estimate", estimate);
   for (const Warning& warning : evaluation.warnings) {
-    report["warnings"].push_back({{"id", warning.id}, {"message", warning.message}});
+    report["warnings"].push_back({{"id", warning.id}, {"message", valid_utf8(warning.message)}});
   }
   report["run"] = run_json(run);
   return report;

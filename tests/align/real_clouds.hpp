@@ -26,7 +26,7 @@ struct LidarPair {
   static std::filesystem::path folder() { return data_folder() / "small_gicp/data"; }
   PointCloud source = read_point_cloud(folder() / "source.ply").cloud;
   PointCloud target = read_point_cloud(folder() / "target.ply").cloud;
-  Eigen::Matrix4d T_target_source = read_transform(folder() / "T_target_source.txt");
+  Eigen::Matrix4d T_target_source = read_transform(folder() / "T_target_source.txt").T;
 };
 
 }  // namespace cmap::test

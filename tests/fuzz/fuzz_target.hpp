@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/LU>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -10,6 +12,8 @@
 #include "io/capture_json.hpp"
 #include "io/format_readers.hpp"
 #include "io/session_arrays.hpp"
+#include "io/trajectory_rows.hpp"
+#include "io/transform_numbers.hpp"
 
 namespace cmap::fuzz {
 
@@ -62,6 +66,35 @@ inline void try_capture(std::span<const std::byte> input) {
     const CaptureCalibration copy = parse_capture_json(capture_json(calibration), "copy").calibration;
     if (!copy.T_imu_lidar.matrix().isApprox(calibration.T_imu_lidar.matrix(), 1e-12)) __builtin_trap();
     if (copy.camera.distortion != calibration.camera.distortion) __builtin_trap();
+  } catch (const InputError&) {
+    // a refusal is an answer
+  }
+}
+
+/// A transform, which is a rotation times a positive scale with a translation.
+inline void try_transform(std::span<const std::byte> input) {
+  try {
+    ByteSource source("input", input);
+    const Eigen::Matrix4d T = parse_transform(source).T;
+    if (!T.allFinite() || T.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) __builtin_trap();
+    if (!(T.topLeftCorner<3, 3>().determinant() > 0.0)) __builtin_trap();
+  } catch (const InputError&) {
+    // a refusal is an answer
+  }
+}
+
+/// Poses, whose times increase where there are any.
+inline void try_trajectory(std::span<const std::byte> input) {
+  try {
+    ByteSource source("input", input);
+    const TrajectoryFile file = parse_trajectory(source);
+    if (file.poses.empty() || file.rows < file.poses.size()) __builtin_trap();
+    for (std::size_t i = 0; i < file.poses.size(); ++i) {
+      const StampedPose& pose = file.poses[i];
+      if (!std::isfinite(pose.time_s) || !pose.position.allFinite()) __builtin_trap();
+      if (!(std::abs(pose.rotation.norm() - 1.0) < 1e-9)) __builtin_trap();
+      if (i > 0 && !(pose.time_s > file.poses[i - 1].time_s)) __builtin_trap();
+    }
   } catch (const InputError&) {
     // a refusal is an answer
   }

@@ -150,8 +150,8 @@ TEST(Capture, BrokenTablesAreRefusedByFileAndLine) {
       {"imu.csv", "timestamp_s,gx,gy,gz,ax,ay,az\n1,0,0,0,0,0\n", "line 2: 6 cells; the 7"},
       {"imu.csv", "timestamp_s,gx,gy,gz,ax,ay,az\n", "holds no measurement"},
       {"imu.csv", "timestamp_s,ax,ay,az,gx,gy,gz\n", "line 1: the columns timestamp_s,gx,gy,gz,ax,ay,az expected"},
-      {"lio.tum", "1 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n", "line 2: time 1 s is not after"},
-      {"lio.tum", "1 0 0 0 0 0 0 0\n", "line 1: the quaternion has length 0"},
+      {"lio.tum", "1 0 0 0 0 0 0 0\n", "none of its 1 rows is a pose"},
+      {"lio.tum", "1 0 0 1 0 1 0 2 0 0 1 3\n", "poses without times"},
       {"predictions", "a file", "is no folder"},
   };
   for (const Case& broken : kCases) {

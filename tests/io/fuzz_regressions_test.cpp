@@ -18,6 +18,8 @@ std::size_t replay(const std::filesystem::path& folder) {
     for (const auto& [name, reader] : kReaders) fuzz::try_reader(reader, std::as_bytes(std::span(bytes)));
     fuzz::try_session(std::as_bytes(std::span(bytes)));
     fuzz::try_capture(std::as_bytes(std::span(bytes)));
+    fuzz::try_transform(std::as_bytes(std::span(bytes)));
+    fuzz::try_trajectory(std::as_bytes(std::span(bytes)));
     ++n;
   }
   return n;
@@ -59,6 +61,17 @@ TEST(FuzzRegressions, EverySessionAndCaptureSeedIsRead) {
   EXPECT_EQ(parse_capture_json(bytes_of("capture/fisheye"), "seed").calibration.camera.distortion.size(), 4U);
 }
 
+TEST(FuzzRegressions, EveryTransformAndTrajectorySeedIsRead) {
+  for (const auto& entry : std::filesystem::directory_iterator(fuzz_folder() / "corpus" / "transform")) {
+    ByteSource source(entry.path());
+    EXPECT_NE(parse_transform(source).T, Eigen::Matrix4d::Identity()) << entry.path();
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(fuzz_folder() / "corpus" / "trajectory")) {
+    ByteSource source(entry.path());
+    EXPECT_EQ(parse_trajectory(source).poses.size(), 2U) << entry.path();
+  }
+}
+
 /// Every seed cut at every length, and with every byte changed: what a fuzzer does first.
 TEST(FuzzRegressions, CutAndChangedSeedsAreReadOrRefused) {
   for (const auto& [name, reader] : kReaders) {
@@ -74,8 +87,10 @@ TEST(FuzzRegressions, CutAndChangedSeedsAreReadOrRefused) {
   }
 }
 
-TEST(FuzzRegressions, CutAndChangedSessionsAndCapturesAreReadOrRefused) {
-  for (const auto& [name, attempt] : {std::pair{"npz", &fuzz::try_session}, std::pair{"capture", &fuzz::try_capture}}) {
+TEST(FuzzRegressions, CutAndChangedSessionsCapturesAndPosesAreReadOrRefused) {
+  for (const auto& [name, attempt] :
+       {std::pair{"npz", &fuzz::try_session}, std::pair{"capture", &fuzz::try_capture},
+        std::pair{"transform", &fuzz::try_transform}, std::pair{"trajectory", &fuzz::try_trajectory}}) {
     for (const auto& entry : std::filesystem::directory_iterator(fuzz_folder() / "corpus" / name)) {
       const std::string seed = read_bytes(entry.path());
       for (std::size_t i = 0; i < seed.size(); ++i) {

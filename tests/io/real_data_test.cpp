@@ -50,7 +50,7 @@ TEST_F(RealData, LidarPcdWithForeignFields) {
 TEST_F(RealData, CloudComparePlyAndTransform) {
   EXPECT_EQ(read("small_gicp/data/source.ply").info.points, 69792U);
   EXPECT_EQ(read("small_gicp/data/target.ply").info.points, 69088U);
-  EXPECT_EQ(read_transform(folder_ / "small_gicp/data/T_target_source.txt")(3, 3), 1.0);
+  EXPECT_EQ(read_transform(folder_ / "small_gicp/data/T_target_source.txt").T(3, 3), 1.0);
 }
 
 }  // namespace

@@ -87,7 +87,7 @@ TEST(SimulateCapture, IsReadBackAndAgreesWithItsTruth) {
   const Capture capture = open_capture(folder / "capture");
   EXPECT_TRUE(capture.warnings.empty());
   const Scene scene = make_scene(options.scene);
-  const Trajectory truth = read_tum_trajectory(folder / "capture/truth/trajectory.tum");
+  const Trajectory truth = read_trajectory(folder / "capture/truth/trajectory.tum").poses;
   ASSERT_GT(capture.scans.size(), 30u);
   ASSERT_GT(capture.images.size(), 6u);
   EXPECT_GT(capture.imu.size(), 600u);
@@ -145,7 +145,7 @@ TEST(SimulateCapture, TheTrueMapIsWhatPicturesSaw) {
   options.truth.map_max_distance_m = 25.0;
   simulate_capture(options, folder / "capture");
   const PointCloud map = read_point_cloud(folder / "capture/truth/map.ply").cloud;
-  const Trajectory truth = read_tum_trajectory(folder / "capture/truth/trajectory.tum");
+  const Trajectory truth = read_trajectory(folder / "capture/truth/trajectory.tum").poses;
   ASSERT_GT(map.size(), 1000u);
   EXPECT_TRUE(map.has_color());
   const Scene scene = make_scene(options.scene);

@@ -12,6 +12,7 @@ struct ProtocolInputs {
   std::optional<Trajectory> estimate_trajectory = {};
   /// Where the estimate's sensor was, for observed = sensor; in the estimate's frame, and moved with the estimate.
   std::vector<Eigen::Vector3d> sensor_positions = {};
+  std::vector<Warning> warnings = {};  ///< of what was read; they come first among the evaluation's
 };
 
 /// The whole comparison as the options say: the scores before, the alignment, the band of small motions, the

@@ -3,8 +3,10 @@
 #include <Eigen/Geometry>
 #include <filesystem>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "cmap/core/warning.hpp"
 #include "cmap/io/output_file.hpp"
 
 namespace cmap {
@@ -19,21 +21,36 @@ struct StampedPose {
 /// Poses by increasing time.
 using Trajectory = std::vector<StampedPose>;
 
-/// Reads a TUM file: lines "time x y z qx qy qz qw", separated by blanks or commas, `#` comments; quaternions of any
-/// length are normalized. Throws InputError naming file, line and reason: not eight finite numbers, a quaternion of
-/// zero, a time that is not after the one before, no pose at all.
-Trajectory read_tum_trajectory(const std::filesystem::path& path);
+/// A trajectory as a file gave it.
+struct TrajectoryFile {
+  Trajectory poses;               ///< at least one
+  bool has_times = true;          ///< false: the file holds none, and time_s is the index of the row
+  std::size_t rows = 0;           ///< of poses in the file, those left out too
+  std::vector<Warning> warnings;  ///< each names the file
+};
 
-/// Reads KITTI poses, 12 numbers a line: the upper rows of T_world_body, row-major; and their times from a file with
-/// one number of seconds a line. Blanks or commas, `#` comments. Rotations are projected to SO(3). Throws InputError
-/// naming file, line and reason: another number of numbers, one that is not finite, no rotation (beyond 1e-3), another
-/// number of times than poses, times that do not increase, no pose.
-Trajectory read_kitti_trajectory(const std::filesystem::path& poses, const std::filesystem::path& times);
+/// Reads a trajectory in any of these layouts, told apart by what the file holds; one pose a line, separated by blanks,
+/// commas or semicolons, `#` comments:
+/// - columns named by a header line or a comment: a time (or sec and nsec), a position, a quaternion, in any order,
+///   others are passed over (EuRoC's and TUM-VI's csv, ROS's "rostopic echo -p", Newer College's);
+/// - 8 numbers: TUM, "time x y z qx qy qz qw"; quaternions of any length are normalized;
+/// - 17 numbers: EuRoC's ground truth without its header line (the quaternion is w x y z), or a time and a 4x4 matrix;
+/// - 12 or 16 numbers: KITTI, VGGT-Long's camera_poses.txt; the rows of T_world_body, without times. 13: a time and 12;
+/// - COLMAP's and Open3D's .log of a camera's poses, without times.
+/// Times that can only be milli-, micro- or nanoseconds since 1970, or are so named, become seconds. Rotations of
+/// matrices are projected to SO(3). Rows that are not finite or whose quaternion is zero (lost tracking) are left out, as
+/// is every pose but the first of one time; unordered rows are sorted: all with a warning. Throws InputError naming file,
+/// line and reason: another number of columns, what is no number, decimal commas, no rotation (beyond 1e-3), no
+/// pose, files that are something else. Thread-safe.
+TrajectoryFile read_trajectory(const std::filesystem::path& path);
 
-/// Reads VGGT-Long's camera_poses.txt, 16 numbers a line: the camera-to-world matrix, row-major, in the unit of the
-/// first chunk. Without a file of times, the time of a pose is its index in seconds. Throws InputError likewise.
-Trajectory read_camera_poses(const std::filesystem::path& poses,
-                             const std::optional<std::filesystem::path>& times = std::nullopt);
+/// Two trajectories to be paired by time. `times`, a file with one time a line for each pose, are those of whichever
+/// holds none. Where neither does and none are given, both must have as many rows: they are paired row by row, with a
+/// warning in the first. Throws as read_trajectory(), InputError for another number of times than poses or where times
+/// are missing, UsageError where `times` are given and both have their own.
+std::pair<TrajectoryFile, TrajectoryFile> read_trajectory_pair(const std::filesystem::path& first,
+                                                               const std::filesystem::path& second,
+                                                               const std::optional<std::filesystem::path>& times);
 
 /// Writes a TUM file whose numbers read back as they were. The file appears under its name only when complete. Throws
 /// UsageError if it cannot be written.

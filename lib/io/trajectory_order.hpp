@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cmap/core/warning.hpp"
+#include "cmap/io/trajectory_file.hpp"
+
+namespace cmap {
+
+/// Turns times into seconds: by `units_per_s`, or, where that is 0, by their size: since 1970, 1e9 seconds have passed,
+/// or 1e12 milli-, 1e15 micro- or 1e18 nanoseconds. What the numbers alone tell is said, as is a step that is no time
+/// between two poses. Returns the units a second that were taken.
+double times_to_seconds(Trajectory& poses, double units_per_s, const std::string& name, std::vector<Warning>& warnings);
+
+/// Sorts poses by time and leaves out all but the first of each time, with warnings. The result is a Trajectory.
+void put_in_order(Trajectory& poses, const std::string& name, std::vector<Warning>& warnings);
+
+}  // namespace cmap
