@@ -76,10 +76,9 @@ void add_options(CLI::App& app, Arguments& a) {
       ->type_name("FILE");
   app.add_option("--times", a.times, "times of poses that have none (KITTI), one number of seconds a line")
       ->type_name("FILE");
-  app.add_option(
-         "--observed-from", a.sensor,
-         "where the estimate's sensor was: poses, or a capture with its scans and lio.tum, in the estimate's "
-         "frame; means --observed sensor")
+  app.add_option("--observed-from", a.sensor,
+                 "where the estimate's sensor was: poses, or a capture with its scans and lio.tum, in the estimate's "
+                 "frame; means --observed sensor")
       ->type_name("FILE|DIR");
   app.add_option("--require", a.requirements, "exit 1 unless it holds: LCR>=0.2, accuracy@0.1<=0.06; repeatable")
       ->type_name("EXPR")

@@ -12,6 +12,8 @@ inline std::string_view without_byte_order_mark(std::string_view text) {
 }
 
 /// Whether a text starts as UTF-16 does (PowerShell's redirection); nothing here reads it.
-inline bool starts_as_utf16(std::string_view text) { return text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"); }
+inline bool starts_as_utf16(std::string_view text) {
+  return text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
+}
 
 }  // namespace cmap

@@ -18,7 +18,8 @@ bool parse_msvc(std::string_view token, T& value) {
   const std::string_view word = token.substr(3);
   const auto is_part = [](char c) { return (c >= 'A' && c <= 'Z') || c == '0'; };
   if (word.front() == '0' || !std::all_of(word.begin(), word.end(), is_part)) return false;
-  const T magnitude = word.starts_with("INF") ? std::numeric_limits<T>::infinity() : std::numeric_limits<T>::quiet_NaN();
+  const T magnitude =
+      word.starts_with("INF") ? std::numeric_limits<T>::infinity() : std::numeric_limits<T>::quiet_NaN();
   value = negative ? -magnitude : magnitude;
   return true;
 }
@@ -48,7 +49,8 @@ bool parse_whole(std::string_view token, T& value) {
 
 std::string_view without_comment(std::string_view line) {
   const auto within_number = [&](std::size_t sign) {
-    return line.substr(0, sign).ends_with("1.") && sign + 1 < line.size() && line[sign + 1] >= 'A' && line[sign + 1] <= 'Z';
+    return line.substr(0, sign).ends_with("1.") && sign + 1 < line.size() && line[sign + 1] >= 'A' &&
+           line[sign + 1] <= 'Z';
   };
   std::size_t sign = line.find('#');
   while (sign != std::string_view::npos && within_number(sign)) sign = line.find('#', sign + 1);

@@ -8,8 +8,8 @@
 
 namespace cmap {
 
-/// The cells of the lines of a table, comments (`#`, `%`, `//`) and blank lines passed over. One thing separates in a line:
-/// semicolons, else commas, else blanks.
+/// The cells of the lines of a table, comments (`#`, `%`, `//`) and blank lines passed over. One thing separates in a
+/// line: semicolons, else commas, else blanks.
 class RowReader {
  public:
   explicit RowReader(ByteSource& source) : lines_(source) {}

@@ -38,7 +38,8 @@ std::vector<double> read_times(const std::filesystem::path& path) {
 void set_times(TrajectoryRows& rows, const std::string& name, const std::filesystem::path& path) {
   const std::vector<double> times = read_times(path);
   if (times.size() != rows.n_rows) {
-    throw InputError(fmt::format("{}: {} times for the {} poses of {}", path.string(), times.size(), rows.n_rows, name));
+    throw InputError(
+        fmt::format("{}: {} times for the {} poses of {}", path.string(), times.size(), rows.n_rows, name));
   }
   const std::size_t n_before = rows.poses.size();
   std::erase_if(rows.poses, [&](StampedPose& pose) {
@@ -80,9 +81,7 @@ TrajectoryRows read_rows_of(const std::filesystem::path& path) {
 
 }  // namespace
 
-TrajectoryFile parse_trajectory(ByteSource& source) {
-  return finish(read_trajectory_rows(source), source.name());
-}
+TrajectoryFile parse_trajectory(ByteSource& source) { return finish(read_trajectory_rows(source), source.name()); }
 
 TrajectoryFile read_trajectory(const std::filesystem::path& path) {
   ByteSource source(path);

@@ -31,7 +31,8 @@ bool ends_as_matrix(const RowReader& row) {
 }
 
 constexpr std::string_view kKnown =
-    "a pose is read from 8 numbers, time x y z qx qy qz qw (TUM), from the 12 or 16 of a matrix (KITTI), or from columns "
+    "a pose is read from 8 numbers, time x y z qx qy qz qw (TUM), from the 12 or 16 of a matrix (KITTI), or from "
+    "columns "
     "that a header line names";
 
 }  // namespace

@@ -19,9 +19,9 @@ struct TrajectoryLayout {
   std::vector<std::size_t> pose;  ///< 7: x y z qx qy qz qw; 12 or 16: the rows of a matrix, from its first element on
 };
 
-/// The layout that a header names ("timestamp [ns], p_x, ..., q_w, ..."); none where it has another number of names than
-/// rows have columns, or names no x y z. Throws InputError where it names a position, but no time or not the x y z w of
-/// a quaternion.
+/// The layout that a header names ("timestamp [ns], p_x, ..., q_w, ..."); none where it has another number of names
+/// than rows have columns, or names no x y z. Throws InputError where it names a position, but no time or not the x y z
+/// w of a quaternion.
 std::optional<TrajectoryLayout> trajectory_layout_by_names(const LineReader& lines, std::string_view header,
                                                            std::size_t columns);
 

@@ -130,7 +130,8 @@ void place(const LineReader& lines, std::optional<std::size_t>& slot, std::size_
 }
 
 bool complete(const Places& places, std::size_t n) {
-  return std::all_of(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(n), [](const auto& p) { return p.has_value(); });
+  return std::all_of(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(n),
+                     [](const auto& p) { return p.has_value(); });
 }
 
 }  // namespace

@@ -52,10 +52,10 @@ double times_to_seconds(Trajectory& poses, double units_per_s, const std::string
   }
   for (StampedPose& pose : poses) pose.time_s /= units_per_s;
   if (poses.size() > 1 && units_per_s == 1.0 && median_step_s(poses) > kDay_s) {
-    warnings.push_back({"trajectory_time_unit",
-                        fmt::format("{}: its poses are {:g} s apart, which is more than a day: are its times "
-                                    "nanoseconds? They are read as seconds",
-                                    name, median_step_s(poses))});
+    warnings.push_back(
+        {"trajectory_time_unit", fmt::format("{}: its poses are {:g} s apart, which is more than a day: are its times "
+                                             "nanoseconds? They are read as seconds",
+                                             name, median_step_s(poses))});
   }
   return units_per_s;
 }
@@ -66,9 +66,9 @@ void put_in_order(Trajectory& poses, const std::string& name, std::vector<Warnin
   for (std::size_t i = 1; i < poses.size(); ++i) n_late += earlier(poses[i], poses[i - 1]);
   if (n_late > 0) {
     std::stable_sort(poses.begin(), poses.end(), earlier);
-    warnings.push_back({"trajectory_unordered",
-                        fmt::format("{}: {} {} before the row above in time; the poses are sorted by time", name, n_late,
-                                    plural(n_late, "row is", "rows are"))});
+    warnings.push_back(
+        {"trajectory_unordered", fmt::format("{}: {} {} before the row above in time; the poses are sorted by time",
+                                             name, n_late, plural(n_late, "row is", "rows are"))});
   }
   std::size_t n_repeated = 0, n_other = 0, n_kept = 0;
   for (const StampedPose& pose : poses) {
@@ -80,9 +80,10 @@ void put_in_order(Trajectory& poses, const std::string& name, std::vector<Warnin
   }
   poses.resize(n_kept);
   if (n_repeated > 0) {
-    warnings.push_back({"trajectory_repeated", fmt::format("{}: {} left out", name,
-                                                           n_repeated == 1 ? std::string("a repeated pose is")
-                                                                           : fmt::format("{} repeated poses are", n_repeated))});
+    warnings.push_back(
+        {"trajectory_repeated", fmt::format("{}: {} left out", name,
+                                            n_repeated == 1 ? std::string("a repeated pose is")
+                                                            : fmt::format("{} repeated poses are", n_repeated))});
   }
   if (n_other > 0) {
     warnings.push_back(

@@ -10,7 +10,7 @@ namespace cmap {
 
 /// The rows of a trajectory's file, as they stand.
 struct TrajectoryRows {
-  Trajectory poses;         ///< in the file's order, times in the file's unit; without times the index of the row
+  Trajectory poses;  ///< in the file's order, times in the file's unit; without times the index of the row
   bool has_times = true;
   double units_per_s = 0.0;         ///< as the file names it; 0: it does not
   std::size_t n_rows = 0;           ///< with those left out:

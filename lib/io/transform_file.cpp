@@ -94,7 +94,8 @@ Eigen::Matrix4d matrix_of(const ByteSource& source, TransformNumbers numbers, st
   if (numbers.values.size() != 16 || two_poses) refuse(source, numbers);
   const Eigen::Matrix4d matrix = Eigen::Map<const RowMajor>(numbers.values.data());
   if (!is_column_major(numbers, matrix)) return matrix;
-  warnings.push_back({"transform_column_major", source.name() + ": its numbers are read column by column (column-major)"});
+  warnings.push_back(
+      {"transform_column_major", source.name() + ": its numbers are read column by column (column-major)"});
   return matrix.transpose();
 }
 
@@ -125,7 +126,8 @@ TransformNumbers transform_from_npy(ByteSource& source) {
   std::vector<std::uint64_t> shape = array.shape();
   while (shape.size() > 1 && shape.front() == 1) shape.erase(shape.begin());
   if (shape.size() == 3 && shape[1] * shape[2] <= 16) source.fail("{} matrices; a transform is one", shape[0]);
-  if (shape.empty() || shape.size() > 2) source.fail("an array of shape {}; (4, 4) expected", shape_text(array.shape()));
+  if (shape.empty() || shape.size() > 2)
+    source.fail("an array of shape {}; (4, 4) expected", shape_text(array.shape()));
   const Array<double> values = array.to_doubles();
   TransformNumbers numbers{{values.begin(), values.end()}, {}, false};
   numbers.rows.assign(shape.size() == 1 ? 1 : shape[0], shape.back());

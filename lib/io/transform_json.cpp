@@ -69,8 +69,8 @@ std::optional<TransformNumbers> as_pose(const Json& json) {
   const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
   if (!(rotation.norm() > 1e-6)) throw UsageError(fmt::format("the quaternion has length {:g}", rotation.norm()));
   Eigen::Matrix<double, 3, 4, Eigen::RowMajor> T;
-  T.leftCols<3>() = (json.contains("scale") ? finite_number(json["scale"], "scale") : 1.0) *
-                    rotation.normalized().toRotationMatrix();
+  T.leftCols<3>() =
+      (json.contains("scale") ? finite_number(json["scale"], "scale") : 1.0) * rotation.normalized().toRotationMatrix();
   T.col(3) = Eigen::Vector3d(v[0], v[1], v[2]);
   return TransformNumbers{{T.data(), T.data() + T.size()}, {4, 4, 4}, false};
 }

@@ -15,9 +15,9 @@ namespace {
 using namespace std::string_view_literals;
 
 /// Words around a printed matrix that say nothing about its numbers.
-constexpr std::array kWords{"array"sv,         "matrix"sv,        "tensor"sv,       "np.array"sv,      "numpy.array"sv,
-                            "np.matrix"sv,     "numpy.matrix"sv,  "torch.tensor"sv, "np.float32"sv,    "np.float64"sv,
-                            "numpy.float32"sv, "numpy.float64"sv, "float32"sv,      "float64"sv,       "torch.float32"sv,
+constexpr std::array kWords{"array"sv,         "matrix"sv,        "tensor"sv,       "np.array"sv,   "numpy.array"sv,
+                            "np.matrix"sv,     "numpy.matrix"sv,  "torch.tensor"sv, "np.float32"sv, "np.float64"sv,
+                            "numpy.float32"sv, "numpy.float64"sv, "float32"sv,      "float64"sv,    "torch.float32"sv,
                             "torch.float64"sv, "Matrix4d"sv,      "Matrix4f"sv};
 
 bool is_word(std::string_view token) {

@@ -108,8 +108,7 @@ void add_input_warnings(Json& warnings, const char* which, const InputDescriptio
     warnings.push_back({{"id", "input_note"}, {"message", valid_utf8(std::string(which) + ": " + note)}});
   }
   for (const Warning& warning : input.file.warnings) {
-    warnings.push_back(
-        {{"id", warning.id}, {"message", valid_utf8(std::string(which) + ": " + warning.message)}});
+    warnings.push_back({{"id", warning.id}, {"message", valid_utf8(std::string(which) + ": " + warning.message)}});
   }
 }
 

@@ -67,7 +67,8 @@ TEST(TrajectoryFile, StampsKeepMicroseconds) {
 TEST(TrajectoryFile, ColumnsByTheirNames) {
   for (const char* text :
        {"timestamp,tx,ty,tz,qw,qx,qy,qz\n2.5,4,5,6,1,0,0,1\n", "# time,x,y,z,qw,qx,qy,qz\n2.5,4,5,6,1,0,0,1\n",
-        "qx qy qz qw px py pz t\n0 0 1 1 4 5 6 2.5\n", "\"Time\";\"X\";\"Y\";\"Z\";\"Qx\";\"Qy\";\"Qz\";\"Qw\"\n2.5;4;5;6;0;0;1;1\n",
+        "qx qy qz qw px py pz t\n0 0 1 1 4 5 6 2.5\n",
+        "\"Time\";\"X\";\"Y\";\"Z\";\"Qx\";\"Qy\";\"Qz\";\"Qw\"\n2.5;4;5;6;0;0;1;1\n",
         "#sec,nsec,x,y,z,qx,qy,qz,qw\n2,500000000,4,5,6,0,0,1,1\n",
         "# timestamp [s] tx [m] ty [m] tz [m] qx [-] qy [-] qz [-] qw [-]\n2.5 4 5 6 0 0 1 1\n",
         "timestamp_ns,p_x,p_y,p_z,q_x,q_y,q_z,q_w,v_x,v_y,v_z\n2500000000,4,5,6,0,0,1,1,nan,nan,nan\n",
@@ -101,8 +102,9 @@ TEST(TrajectoryFile, EurocGroundTruthWithAndWithoutItsHeader) {
 }
 
 TEST(TrajectoryFile, TimesAreMadeSecondsAndSaid) {
-  const std::pair<const char*, const char*> kUnits[] = {
-      {"1403636580500000000.000", "nanoseconds"}, {"1403636580500000", "microseconds"}, {"1403636580500", "milliseconds"}};
+  const std::pair<const char*, const char*> kUnits[] = {{"1403636580500000000.000", "nanoseconds"},
+                                                        {"1403636580500000", "microseconds"},
+                                                        {"1403636580500", "milliseconds"}};
   for (const auto& [time, name] : kUnits) {
     const TrajectoryFile file = read_content(std::string(time) + " 0 0 0 0 0 0 1\n");
     EXPECT_EQ(file.poses[0].time_s, 1403636580.5);
@@ -124,7 +126,8 @@ TEST(TrajectoryFile, CommasWithoutNamesMayBeEurocs) {
 
 TEST(TrajectoryFile, LostRowsAreLeftOutAndCounted) {
   const TrajectoryFile file = read_content(
-      "1 0 0 0 0 0 0 1\n2 nan nan nan nan nan nan nan\n3 1.#QNAN 0 0 0 0 0 1\n4 0 0 0 0 0 0 0\n5 -nan(ind) 0 0 0 0 0 1\n"
+      "1 0 0 0 0 0 0 1\n2 nan nan nan nan nan nan nan\n3 1.#QNAN 0 0 0 0 0 1\n4 0 0 0 0 0 0 0\n5 -nan(ind) 0 0 0 0 0 "
+      "1\n"
       "6,,,,,,,\nnan 0 0 0 0 0 0 1\n7 inf 0 0 0 0 0 1\n8 0 0 0 0 0 0 1\n");
   EXPECT_THAT(times_of(file.poses), ElementsAre(1, 8));
   EXPECT_EQ(file.rows, 9U);
@@ -154,8 +157,9 @@ TEST(TrajectoryFile, UnorderedRowsAreSorted) {
 const std::string kKitti = "1 0 0 1 0 1 0 2 0 0 1 3\n0 -1 0 4 1 0 0 5 0 0 1 6\n";
 
 TEST(TrajectoryFile, MatricesHaveNoTimesOfTheirOwn) {
-  for (const std::string& text : {kKitti, std::string("1 0 0 1 0 1 0 2 0 0 1 3 0 0 0 1\n0,-1,0,4,1,0,0,5,0,0,1,6,0,0,1e-9,1\n"),
-                                  std::string("0 0 1\n1 0 0 1\n0 1 0 2\n0 0 1 3\n0 0 0 1\n1 1 2\n0 -1 0 4\n1 0 0 5\n0 0 1 6\n0 0 0 1\n")}) {
+  for (const std::string& text :
+       {kKitti, std::string("1 0 0 1 0 1 0 2 0 0 1 3 0 0 0 1\n0,-1,0,4,1,0,0,5,0,0,1,6,0,0,1e-9,1\n"),
+        std::string("0 0 1\n1 0 0 1\n0 1 0 2\n0 0 1 3\n0 0 0 1\n1 1 2\n0 -1 0 4\n1 0 0 5\n0 0 1 6\n0 0 0 1\n")}) {
     const TrajectoryFile file = read_content(text);
     EXPECT_FALSE(file.has_times);
     EXPECT_THAT(file.warnings, IsEmpty());
@@ -200,8 +204,10 @@ TEST(TrajectoryFile, PairsOfWhichOneNeedsTimes) {
   EXPECT_THAT(input_error([&] { read_trajectory_pair(kitti, tum, std::nullopt); }), HasSubstr("kitti.txt: " + way_out));
   EXPECT_THAT(input_error([&] { read_trajectory_pair(tum, kitti, std::nullopt); }), HasSubstr("kitti.txt: " + way_out));
   EXPECT_THAT(input_error([&] { read_trajectory_pair(kitti, other, std::nullopt); }), HasSubstr("--times"));
-  EXPECT_THAT(input_error([&] { read_trajectory_pair(other, tum, times); }), HasSubstr("times.txt: 2 times for the 4 poses of"));
-  EXPECT_THAT(input_error([&] { read_trajectory_pair(kitti, tum, tum); }), HasSubstr("poses.tum: line 1: 8 numbers; one a line"));
+  EXPECT_THAT(input_error([&] { read_trajectory_pair(other, tum, times); }),
+              HasSubstr("times.txt: 2 times for the 4 poses of"));
+  EXPECT_THAT(input_error([&] { read_trajectory_pair(kitti, tum, tum); }),
+              HasSubstr("poses.tum: line 1: 8 numbers; one a line"));
   EXPECT_THROW(read_trajectory_pair(tum, tum, times), UsageError);
 }
 

@@ -45,7 +45,8 @@ void expect_read(std::string_view content) {
 TEST(TransformFile, Text) {
   for (const char* text :
        {"0 -2 0 1\n2 0 0 2.5\n0 0 2 -3\n0 0 0 1\n", "# T\n0, -2, 0, 1\n\n2 0 0 2.5 # row\r\n0;0;2;-3\n0\t0\t0\t1",
-        "0 -2 0 1\n2 0 0 2.5\n0 0 2 -3\n", "0,-2,0,1,2,0,0,2.5,0,0,2,-3", "0 -2 0 1 \r\n2 0 0 2.5\t\r\n0 0 2 -3 \r\n\r\n"}) {
+        "0 -2 0 1\n2 0 0 2.5\n0 0 2 -3\n", "0,-2,0,1,2,0,0,2.5,0,0,2,-3",
+        "0 -2 0 1 \r\n2 0 0 2.5\t\r\n0 0 2 -3 \r\n\r\n"}) {
     expect_read(text);
   }
   expect_read(kRow16);
@@ -55,19 +56,22 @@ TEST(TransformFile, Text) {
 }
 
 TEST(TransformFile, AsProgramsPrintIt) {
-  for (const char* text : {
-           "[[ 0.  -2.   0.   1. ]\n [ 2.   0.   0.   2.5]\n [ 0.   0.   2.  -3. ]\n [ 0.   0.   0.   1. ]]\n",
-           "array([[ 0. , -2. ,  0. ,  1. ],\n       [ 2. ,  0. ,  0. ,  2.5],\n       [ 0. ,  0. ,  2. , -3. ],\n"
-           "       [ 0. ,  0. ,  0. ,  1. ]], dtype=float32)\n",
-           "[[ 0.00000000e+00 -2.00000000e+00\n   0.00000000e+00  1.00000000e+00]\n [ 2.00000000e+00  0.00000000e+00\n"
-           "   0.00000000e+00  2.50000000e+00]\n [ 0.00000000e+00  0.00000000e+00\n   2.00000000e+00 -3.00000000e+00]]",
-           "[[np.float64(0.0), np.float64(-2.0), 0, 1], [2, 0, 0, 2.5], [0, 0, 2, -3], [0, 0, 0, 1]]",
-           "tensor([[ 0.0, -2.0, 0.0, 1.0],\n        [2, 0, 0, 2.5],\n [0, 0, 2, -3],\n [0, 0, 0, 1]], device='cuda:0',\n"
-           "       dtype=torch.float64)",
-           "T = [0 -2 0 1; 2 0 0 2.5; 0 0 2 -3; 0 0 0 1];", "T =\n\n     0    -2     0     1.0\n     2     0     0     2.5\n"
-           "     0     0     2    -3\n     0     0     0     1\n",
-           "[0, -2, 0, 1;\n 2, 0, 0, 2.5;\n 0, 0, 2, -3;\n 0, 0, 0, 1]", "{{0, -2, 0, 1}, {2, 0, 0, 2.5}, {0, 0, 2, -3}, {0, 0, 0, 1}}",
-           "T_ref_est: ((0, -2, 0, 1), (2, 0, 0, 2.5), (0, 0, 2, -3), (0, 0, 0, 1))", "[0.,-2.,0.,1.,2.,0.,0.,2.5,0.,0.,2.,-3.]"}) {
+  for (const char* text :
+       {"[[ 0.  -2.   0.   1. ]\n [ 2.   0.   0.   2.5]\n [ 0.   0.   2.  -3. ]\n [ 0.   0.   0.   1. ]]\n",
+        "array([[ 0. , -2. ,  0. ,  1. ],\n       [ 2. ,  0. ,  0. ,  2.5],\n       [ 0. ,  0. ,  2. , -3. ],\n"
+        "       [ 0. ,  0. ,  0. ,  1. ]], dtype=float32)\n",
+        "[[ 0.00000000e+00 -2.00000000e+00\n   0.00000000e+00  1.00000000e+00]\n [ 2.00000000e+00  0.00000000e+00\n"
+        "   0.00000000e+00  2.50000000e+00]\n [ 0.00000000e+00  0.00000000e+00\n   2.00000000e+00 -3.00000000e+00]]",
+        "[[np.float64(0.0), np.float64(-2.0), 0, 1], [2, 0, 0, 2.5], [0, 0, 2, -3], [0, 0, 0, 1]]",
+        "tensor([[ 0.0, -2.0, 0.0, 1.0],\n        [2, 0, 0, 2.5],\n [0, 0, 2, -3],\n [0, 0, 0, 1]], device='cuda:0',\n"
+        "       dtype=torch.float64)",
+        "T = [0 -2 0 1; 2 0 0 2.5; 0 0 2 -3; 0 0 0 1];",
+        "T =\n\n     0    -2     0     1.0\n     2     0     0     2.5\n"
+        "     0     0     2    -3\n     0     0     0     1\n",
+        "[0, -2, 0, 1;\n 2, 0, 0, 2.5;\n 0, 0, 2, -3;\n 0, 0, 0, 1]",
+        "{{0, -2, 0, 1}, {2, 0, 0, 2.5}, {0, 0, 2, -3}, {0, 0, 0, 1}}",
+        "T_ref_est: ((0, -2, 0, 1), (2, 0, 0, 2.5), (0, 0, 2, -3), (0, 0, 0, 1))",
+        "[0.,-2.,0.,1.,2.,0.,0.,2.5,0.,0.,2.,-3.]"}) {
     expect_read(text);
   }
 }
@@ -84,7 +88,8 @@ TEST(TransformFile, Json) {
   // evo's: half a turn about x by its quaternion, and the scale.
   Eigen::Matrix4d T = Eigen::Vector4d(3, -3, -3, 1).asDiagonal();
   T.col(3) << 1, 2, 4, 1;
-  EXPECT_TRUE(read_content("{\"x\":1,\"y\":2,\"z\":4,\"qx\":2,\"qy\":0,\"qz\":0,\"qw\":0,\"scale\":3}").T.isApprox(T, 1e-15));
+  EXPECT_TRUE(
+      read_content("{\"x\":1,\"y\":2,\"z\":4,\"qx\":2,\"qy\":0,\"qz\":0,\"qw\":0,\"scale\":3}").T.isApprox(T, 1e-15));
 }
 
 TEST(TransformFile, ByteOrderMarkAndLineEnds) {
@@ -102,7 +107,8 @@ TEST(TransformFile, Log) {
 }
 
 std::string npy(std::string_view shape, std::vector<double> values, std::string_view order = "False") {
-  std::string header = "{'descr': '<f8', 'fortran_order': " + std::string(order) + ", 'shape': " + std::string(shape) + ", }\n";
+  std::string header =
+      "{'descr': '<f8', 'fortran_order': " + std::string(order) + ", 'shape': " + std::string(shape) + ", }\n";
   Bytes bytes("\x93NUMPY");
   bytes.put(std::uint8_t{1}, std::uint8_t{0}, static_cast<std::uint16_t>(header.size())).text(header);
   for (const double value : values) bytes.put(value);

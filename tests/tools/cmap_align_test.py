@@ -149,8 +149,45 @@ class Align(unittest.TestCase):
         self.matrix.unlink(), self.json.unlink()
         late = self.input("late.tum", tum(truth, np.arange(100, 106, 0.1)))
         self.refused(UNSUPPORTED, "the times do not meet", source, late, "--method", "trajectory")
-        broken = self.input("broken.tum", "1 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n")
+        broken = self.input("broken.tum", "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 1\n")
         self.refused(INPUT, f"{broken}: line 2", source, broken, "--method", "trajectory")
+
+    def test_layouts_of_trajectories(self):
+        """One path, and the same moved, in whatever layout: the same transform, and what was decided is said."""
+        truth = similarity(0.5, 1.0, (1, 2, 3))
+        times = 1700000000 + np.arange(0, 6, 0.125)
+        path = np.stack([5 * np.cos(times), 5 * np.sin(times), np.sin(2 * times)], 1)
+        moved = path @ truth[:3, :3].T + truth[:3, 3]
+
+        def rows(positions, stamp, row):
+            return "".join(row.format(t=stamp(t), x=p[0], y=p[1], z=p[2]) for t, p in zip(times, positions.tolist()))
+
+        tum = "{t} {x!r} {y!r} {z!r} 0 0 0 1\n"
+        target = self.input("target.tum", rows(moved, float, tum))
+        euroc = "#timestamp,p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []\r\n" + rows(
+            path, lambda t: round(t * 1000) * 10**6, "{t},{x!r},{y!r},{z!r},1,0,0,0\r\n")
+        lost = rows(path, float, tum) + "1800000000 nan nan nan nan nan nan nan\n"
+        kitti = self.input("kitti.txt", rows(path, float, "1 0 0 {x!r} 0 1 0 {y!r} 0 0 1 {z!r}\n"))
+        stamps = self.input("times.txt", rows(path, float, "{t!r}\n"))
+        for source, arguments, said in (
+            (self.input("source.csv", euroc), (), "times are read as nanoseconds"),
+            (self.input("lost.tum", lost), (), "1 of 49 rows left out: not finite"),
+            (self.input("bom.tum", "\ufeff" + rows(path, float, tum)), (), ""),
+            (kitti, ("--times", stamps), ""),
+        ):
+            with self.subTest(source.name):
+                T, report = self.align(source, target, "--method", "trajectory", "--fit", "se3", *arguments)
+                self.expect_same(T, truth, 1e-6)
+                self.assertIn(said, " ".join(report["warnings"]))
+                if not said:
+                    self.assertEqual(report["warnings"], [])
+        self.matrix.unlink(), self.json.unlink()
+        self.refused(INPUT, "--times FILE gives them", kitti, target, "--method", "trajectory")
+        self.refused(USAGE, "--times has no meaning", REFERENCE, REFERENCE, "--times", stamps)
+        moved_kitti = self.input("moved.txt", rows(moved, float, "1 0 0 {x!r} 0 1 0 {y!r} 0 0 1 {z!r}\n"))
+        T, report = self.align(kitti, moved_kitti, "--method", "trajectory", "--fit", "se3")
+        self.expect_same(T, truth, 1e-6)
+        self.assertIn("paired row by row", " ".join(report["warnings"]))
 
     def test_what_cannot_be_determined(self):
         flat = self.input("flat.ply", plane(2000))

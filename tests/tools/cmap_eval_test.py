@@ -67,6 +67,36 @@ class Results(CmapEval):
             town, copy, "--align", "trajectory", "--ref-trajectory", tum[0], "--est-trajectory", tum[1], "--metrics", "chamfer"
         )
         self.assertAlmostEqual(report["alignment"]["T_ref_est"][0][3], -2, places=9)
+        lost = self.input("lost.tum", tum[1].read_text() + "100 nan nan nan nan nan nan nan\n")
+        report = self.evaluate(
+            town, copy, "--align", "trajectory", "--ref-trajectory", tum[0], "--est-trajectory", lost, "--metrics", "chamfer"
+        )
+        self.assertAlmostEqual(report["alignment"]["T_ref_est"][0][3], -2, places=9)
+        self.assertEqual(report["warnings"][0]["id"], "trajectory_rows_left_out")
+        self.assertIn("lost.tum: 1 of 61 rows left out", report["warnings"][0]["message"])
+
+    def test_transforms_as_people_have_them(self):
+        town = (TOWN / "reference.ply", TOWN / "estimate.ply", "--metrics", "chamfer")
+        T = [[0.8, -0.6, 0, 0.5], [0.6, 0.8, 0, 0.25], [0, 0, 1, -0.125], [0, 0, 0, 1]]
+        plain = self.input("T.txt", "".join(" ".join(map(repr, row)) + "\n" for row in T))
+        expected = self.evaluate(*town, "--transform", plain)
+        self.assertEqual(expected["alignment"]["T_ref_est"], T)
+        np.save(self.folder / "T.npy", np.array(T))
+        flat = sum(map(list, zip(*T)), [])
+        for path in (
+            self.input("print.txt", str(np.array(T))),
+            self.input("repr.txt", repr(np.array(T))),
+            self.input("bom.txt", "\ufeff" + plain.read_text().replace("\n", "\r\n")),
+            self.input("upper.json", json.dumps({"result": {"transformation": T[:3]}})),
+            self.input("columns.json", json.dumps({"extrinsic": flat})),
+            self.folder / "T.npy",
+        ):
+            with self.subTest(path.name):
+                report = self.evaluate(*town, "--transform", path)
+                self.assertEqual(report["alignment"]["T_ref_est"], T)
+                self.assertEqual(report["metrics"], expected["metrics"])
+                said = [w["message"] for w in report["warnings"] if w["id"] == "transform_column_major"]
+                self.assertEqual(len(said), path.name == "columns.json")
 
     def test_tanks_and_temples(self):
         report = self.evaluate(TOWN / "reference.ply", TOWN / "reference.ply", "--as", "tanksandtemples", "--metrics", "f_score")

@@ -38,9 +38,9 @@ struct TrajectoryFile {
 /// - 12 or 16 numbers: KITTI, VGGT-Long's camera_poses.txt; the rows of T_world_body, without times. 13: a time and 12;
 /// - COLMAP's and Open3D's .log of a camera's poses, without times.
 /// Times that can only be milli-, micro- or nanoseconds since 1970, or are so named, become seconds. Rotations of
-/// matrices are projected to SO(3). Rows that are not finite or whose quaternion is zero (lost tracking) are left out, as
-/// is every pose but the first of one time; unordered rows are sorted: all with a warning. Throws InputError naming file,
-/// line and reason: another number of columns, what is no number, decimal commas, no rotation (beyond 1e-3), no
+/// matrices are projected to SO(3). Rows that are not finite or whose quaternion is zero (lost tracking) are left out,
+/// as is every pose but the first of one time; unordered rows are sorted: all with a warning. Throws InputError naming
+/// file, line and reason: another number of columns, what is no number, decimal commas, no rotation (beyond 1e-3), no
 /// pose, files that are something else. Thread-safe.
 TrajectoryFile read_trajectory(const std::filesystem::path& path);
 
