@@ -11,6 +11,7 @@ namespace cmap {
 /// the first line ends with a lone CR (as on old Macs), so do all. The last line may lack its end.
 class LineReader {
  public:
+  /// Throws InputError for UTF-16.
   explicit LineReader(ByteSource& source);
 
   /// The next line without its end, valid until the next call; false at the end of the file.
@@ -32,5 +33,8 @@ class LineReader {
 
 /// The text without a UTF-8 byte order mark at its start.
 std::string_view without_byte_order_mark(std::string_view text);
+
+/// Whether a text is UTF-16 (what PowerShell's redirection wrote), by its byte order mark.
+bool starts_as_utf16(std::string_view text);
 
 }  // namespace cmap

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "io/decimal_comma.hpp"
 #include "io/number_text.hpp"
 
 namespace cmap {
@@ -21,50 +20,48 @@ std::size_t comment_sign(std::string_view line) {
   return std::min(line.size(), line.find_first_not_of("#%"));
 }
 
+bool begins_with_number(std::string_view line) {
+  std::string_view first;
+  double ignored = 0.0;
+  return next_column(line, first) && parse_number(first, ignored);
+}
+
+char separator_of_names(std::string_view line) {
+  const std::size_t found = line.find_first_of(";,");
+  return found == std::string_view::npos ? ' ' : line[found];
+}
+
 }  // namespace
 
 bool RowReader::next() {
-  std::string_view line;
   do {
-    if (!lines_.next(line)) return false;
-    line = without_blanks(line);
-    if (const std::size_t sign = comment_sign(line); sign > 0) {
-      comment_ = without_blanks(line.substr(sign));
-      line = {};
+    if (!lines_.next(line_)) return false;
+    line_ = without_blanks(line_);
+    if (const std::size_t sign = comment_sign(line_); sign > 0) {
+      comment_ = without_blanks(line_.substr(sign));
+      line_ = {};
     }
-    line = without_blanks(without_comment(line));
-  } while (line.empty());
-  if (has_decimal_commas(line)) lines_.fail("decimal commas; write the numbers with points");
-  line_ = line;
-  split(line);
-  if (n_columns_ == 0 || cells_.size() > n_columns_) {
-    if (cells_.back().empty()) cells_.pop_back();
-  }
-  if (n_columns_ == 0) n_columns_ = cells_.size();
+    line_ = without_blanks(without_comment(line_));
+  } while (line_.empty());
+  split();
   return true;
 }
 
-void RowReader::split(std::string_view line) {
-  cells_.clear();
-  has_commas_ = line.find(',') != std::string_view::npos;
-  const bool has_semicolons = line.find(';') != std::string_view::npos;
-  if (!has_commas_ && !has_semicolons) {
-    for (std::string_view cell; !(cell = next_token(line)).empty();) cells_.push_back(cell);
-    return;
-  }
-  const char separator = has_semicolons ? ';' : ',';
-  for (;;) {
-    const std::size_t end = line.find(separator);
-    cells_.push_back(without_blanks(line.substr(0, end)));
-    if (end == std::string_view::npos) return;
-    line.remove_prefix(end + 1);
-  }
+void RowReader::split() {
+  if (!format_ && begins_with_number(line_)) format_ = row_format(lines_.source(), line_, lines_.number());
+  const char separator = format_ ? format_->separator : separator_of_names(line_);
+  split_row(line_, separator, cells_);
+  if (n_columns_ == 0) n_columns_ = cells_.size();
+  // A separator at the end ends the last cell, unless that is the empty one behind it.
+  if (cells_.size() + 1 == n_columns_ && line_.back() == separator) cells_.emplace_back();
 }
 
 double RowReader::number(std::size_t column) const {
   const std::string_view cell = cells_[column];
   double value = std::numeric_limits<double>::quiet_NaN();
-  if (!cell.empty() && !parse_number(cell, value)) lines_.fail("'{}' is not a number", cell.substr(0, 40));
+  if (!cell.empty() && !parse_column(cell, format(), value)) {
+    lines_.fail("'{}' is not a number", cell.substr(0, 40));
+  }
   return value;
 }
 

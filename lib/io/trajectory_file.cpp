@@ -57,6 +57,9 @@ TrajectoryFile finish(TrajectoryRows rows, const std::string& name) {
                                  rows.n_rows, rows.n_not_finite, rows.n_zero_rotation));
   }
   tell_left_out(rows, name, file.warnings);
+  if (rows.decimal_comma) {
+    file.warnings.push_back({"trajectory_decimal_comma", name + ": commas are read as decimal ones"});
+  }
   file.poses = std::move(rows.poses);
   if (!file.has_times) return file;
   const double units_per_s = times_to_seconds(file.poses, rows.units_per_s, name, file.warnings);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <string>
+#include <utility>
 
 #include "io/trajectory_layout.hpp"
 
@@ -59,10 +60,14 @@ bool is_time(std::string_view name) {
          name.ends_with("stamp") || name.ends_with("time");
 }
 
+bool is_nanoseconds(std::string_view name) {
+  return name.ends_with("nsec") || name.ends_with("nsecs") || name.ends_with("nanosec");
+}
+
 double units_per_s(std::string& name, std::string unit) {
   // Seconds are so named whatever they are.
   constexpr std::array<std::pair<std::string_view, double>, 6> kUnits{
-      {{"ns", 1e9}, {"nsec", 1e9}, {"us", 1e6}, {"ms", 1e3}, {"s", 0.0}, {"sec", 0.0}}};
+      {{"ns", 1e9}, {"us", 1e6}, {"ms", 1e3}, {"s", 0.0}, {"sec", 0.0}, {"secs", 0.0}}};
   for (const auto& [word, units] : kUnits) {
     if (unit == word || take_suffix(name, word)) return units;
   }
@@ -84,7 +89,7 @@ Column column_of(std::string_view text) {
   std::string whole(text);
   const std::string unit = plain(take_unit(whole));
   std::string name = plain(whole);
-  if (name == "nsec" || name == "nsecs" || name == "nanosec") return {Quantity::kNanoseconds, 0, 0.0};
+  if (is_nanoseconds(name)) return {Quantity::kNanoseconds, 0, 0.0};
   std::string time = name;
   const double units = units_per_s(time, unit);
   if (is_time(time)) return {Quantity::kTime, 0, units};
@@ -158,6 +163,10 @@ std::optional<TrajectoryLayout> trajectory_layout_by_names(const LineReader& lin
   if (!complete(position, 3)) return std::nullopt;
   if (!complete(quaternion, 4)) {
     lines.fail("no columns for x, y, z and w of a quaternion among '{}'", fmt::join(names, "', '"));
+  }
+  if (!layout.time) {
+    layout.time = std::exchange(layout.nanoseconds, std::nullopt);
+    layout.units_per_s = 1e9;
   }
   if (!layout.time) lines.fail("no column for the time among '{}'", fmt::join(names, "', '"));
   if (layout.nanoseconds) layout.units_per_s = 1.0;

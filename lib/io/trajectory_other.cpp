@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "io/byte_order_mark.hpp"
+#include "io/line_reader.hpp"
 #include "io/trajectory_rows.hpp"
 
 namespace cmap {
@@ -38,13 +38,13 @@ void refuse_other_than_poses(ByteSource& source) {
   constexpr std::uint64_t kLookAt = 512;
   const auto bytes = source.peek(std::min(kLookAt, source.size()));
   std::string_view start(reinterpret_cast<const char*>(bytes.data()), std::min<std::size_t>(bytes.size(), kLookAt));
-  if (starts_as_utf16(start)) source.fail("is UTF-16 text; save it as UTF-8");
   start = without_byte_order_mark(start);
   start.remove_prefix(std::min(start.size(), start.find_first_not_of(" \t\r\n")));
   for (const auto& [known, what] : kKnown) {
     if (start.starts_with(known)) source.fail("is {}", what);
   }
-  if (start.find('\0') != std::string_view::npos) source.fail("is no text; rows of poses expected");
+  if (!starts_as_utf16(start) && start.find('\0') != std::string_view::npos)
+    source.fail("is no text; rows of poses expected");
 }
 
 }  // namespace cmap

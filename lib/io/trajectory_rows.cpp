@@ -143,7 +143,8 @@ TrajectoryRows read_trajectory_rows(ByteSource& source) {
   const TrajectoryLayout layout = layout_of(reader);
   rows.has_times = layout.time.has_value();
   rows.units_per_s = layout.units_per_s;
-  rows.assumed_order = !layout.is_named && layout.columns == 8 && reader.has_commas();
+  rows.assumed_order = !layout.is_named && layout.columns == 8 && reader.format().separator == ',';
+  rows.decimal_comma = reader.format().decimal_comma;
   read_rows(reader, layout, rows);
   return rows;
 }

@@ -16,6 +16,7 @@ struct TrajectoryRows {
   std::size_t n_rows = 0;           ///< with those left out:
   std::size_t n_not_finite = 0;     ///< a number is NaN or infinite
   std::size_t n_zero_rotation = 0;  ///< the quaternion is zero
+  bool decimal_comma = false;       ///< commas were taken as decimal ones
   bool assumed_order = false;       ///< no header, and commas as in EuRoC's files: the quaternion may be w x y z
 };
 

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "io/byte_order_mark.hpp"
+#include "io/line_reader.hpp"
 #include "io/npy_array.hpp"
 #include "io/rotation_check.hpp"
 #include "io/transform_numbers.hpp"

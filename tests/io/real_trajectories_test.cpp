@@ -5,9 +5,6 @@
 namespace cmap::testing {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-
 TEST_F(RealData, KittiPosesArePairedByRow) {
   const auto [estimate, truth] = read_trajectory_pair(folder_ / "kitti_trajectories/kiss_icp_07.txt",
                                                       folder_ / "kitti_trajectories/truth_07.txt", std::nullopt);
