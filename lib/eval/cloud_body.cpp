@@ -38,8 +38,8 @@ double distance_to(const Box3d& box, const Eigen::Vector3d& x) {
 
 CloudBody body_of(const PointCloud& cloud) {
   const Box3d all = bounds(cloud);
-  if (cloud.size() < kFewest) return {all, all, all};
-  CloudBody body{all, core_of(cloud), all};
+  if (cloud.size() < kFewest) return {cloud.size(), all, all, all};
+  CloudBody body{cloud.size(), all, core_of(cloud), all};
   const double reach_m = kStrayDiagonals * body.core_diagonal_m();
   if (reach_m == 0.0 || (distance_to(body.core, all.min) <= reach_m && distance_to(body.core, all.max) <= reach_m)) {
     return body;

@@ -8,6 +8,7 @@ namespace cmap {
 
 /// Where nearly all points of a cloud are, whatever a few of them do; world frame, meters.
 struct CloudBody {
+  std::uint64_t n = 0;         ///< points
   Box3d all;                   ///< bounds of all points
   Box3d core;                  ///< from the 1st to the 99th percentile of every axis, of at most 10,000 points
   Box3d box;                   ///< bounds of all points but the strays

@@ -80,7 +80,10 @@ void check_plausibility(const Findings& f, const CoordinateSteps& steps, std::ve
   const SampledSpacing spacing = sampled_spacing(reference);
   warn_about_points("reference", reference.points, spacing, steps.reference, f.options, warnings);
   warn_about_points("estimate", estimate.points, sampled_spacing(estimate), steps.estimate, f.options, warnings);
-  warn_about_spacing(spacing, f.options, warnings);
+  const bool by_threshold = std::ranges::any_of(metric_catalog(), [&](const MetricInfo& metric) {
+    return metric.per_threshold && f.selection.contains(metric.id);
+  });
+  if (by_threshold) warn_about_spacing(spacing, f.estimate_to_reference, f.options, warnings);
 }
 
 void append(std::vector<MetricRecord>& all, std::vector<MetricRecord> some) {

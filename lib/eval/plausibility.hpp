@@ -42,8 +42,9 @@ void warn_about_points(std::string_view which, const PointBlocks& points, const 
                        const std::optional<CoordinateStep>& step, const EvaluationOptions& options,
                        std::vector<Warning>& warnings);
 
-/// Thresholds below the reference's spacing, at which a perfect estimate would miss half of its points too.
-void warn_about_spacing(const SampledSpacing& reference, const EvaluationOptions& options,
-                        std::vector<Warning>& warnings);
+/// Thresholds below the reference's spacing that most of the estimate misses, as a perfect one may: a place anywhere on
+/// the surface is about as far from the reference's points as these are from one another.
+void warn_about_spacing(const SampledSpacing& reference, const DistanceStats& estimate_to_reference,
+                        const EvaluationOptions& options, std::vector<Warning>& warnings);
 
 }  // namespace cmap

@@ -14,7 +14,7 @@ namespace cmap {
 namespace {
 
 constexpr double kManyRepeated = 0.01;
-constexpr std::size_t kFewestSpaced = 20;  // points of a reference from which on its spacing says something
+constexpr std::size_t kFewest = 20;  // points from which on shares and medians say something
 
 /// Distance to the nearest point at another place, 0 where none is among the neighbors.
 double nearest_elsewhere_m(const PointBlocks& points, std::size_t slot, std::span<const std::uint32_t> neighbors) {
@@ -101,7 +101,7 @@ SampledSpacing sampled_spacing(const Bvh& index) {
   }
   SampledSpacing spacing{std::numeric_limits<double>::quiet_NaN(),
                        static_cast<double>(repeated) / static_cast<double>(slots.size())};
-  if (distances_m.size() < kFewestSpaced) return spacing;
+  if (distances_m.size() < kFewest) return spacing;
   const auto middle = distances_m.begin() + static_cast<std::ptrdiff_t>(distances_m.size() / 2);
   std::nth_element(distances_m.begin(), middle, distances_m.end());
   spacing.spacing_m = *middle;
@@ -114,7 +114,7 @@ void warn_about_points(std::string_view which, const PointBlocks& points, const 
   const bool coarse = step && !is_raster(*step, spacing);
   if (coarse) warnings.push_back(step_warning(which, *step, options));
   // Rounded coordinates meet in the same places: said already.
-  if (spacing.repeated_share < kManyRepeated || (coarse && 2.0 * step->step_m > spacing.spacing_m)) return;
+  if (points.size < kFewest || spacing.repeated_share < kManyRepeated || (coarse && 2.0 * step->step_m > spacing.spacing_m)) return;
   const std::uint64_t n = n_repeated(points);
   warnings.push_back(
       {"repeated_points",
@@ -123,17 +123,19 @@ void warn_about_points(std::string_view which, const PointBlocks& points, const 
                    n, which, points.size, 100.0 * static_cast<double>(n) / static_cast<double>(points.size))});
 }
 
-void warn_about_spacing(const SampledSpacing& reference, const EvaluationOptions& options,
-                        std::vector<Warning>& warnings) {
-  std::vector<double> below_m;
-  std::ranges::copy_if(options.thresholds_m, std::back_inserter(below_m),
-                       [&](double t) { return t < reference.spacing_m; });
-  if (below_m.empty()) return;
+void warn_about_spacing(const SampledSpacing& reference, const DistanceStats& estimate_to_reference,
+                        const EvaluationOptions& options, std::vector<Warning>& warnings) {
+  std::vector<double> missed_m;
+  for (std::size_t t = 0; t < options.thresholds_m.size(); ++t) {
+    const bool below = options.thresholds_m[t] < reference.spacing_m;
+    if (below && estimate_to_reference.share_within(t) < 0.5) missed_m.push_back(options.thresholds_m[t]);
+  }
+  if (missed_m.empty()) return;
   warnings.push_back(
       {"sparse_reference",
-       fmt::format("the reference's points have a spacing of {:.3g} m, more than the threshold{} {:g} m: there even a "
-                   "perfect estimate, where it is denser, misses half of its points",
-                   reference.spacing_m, below_m.size() == 1 ? "" : "s", fmt::join(below_m, ", "))});
+       fmt::format("the reference's points have a spacing of {:.3g} m, above the threshold{} {} m: most of the estimate is "
+                   "farther than that from any of them, which may say more about the reference than about the estimate",
+                   reference.spacing_m, missed_m.size() == 1 ? "" : "s", fmt::join(missed_m, ", "))});
 }
 
 }  // namespace cmap

@@ -89,7 +89,9 @@ void add_pix4d(const fs::path& map, std::vector<ShiftHint>& hints) {
   for (const fs::directory_entry& beside : fs::directory_iterator(map.parent_path() / ".", none)) {
     const std::string name = beside.path().filename().string();
     if (!name.ends_with(kEnd) || !stem.starts_with(name.substr(0, name.size() - kEnd.size()))) continue;
-    const std::vector<double> shift = numbers_of(std::string_view(head_of(beside.path())).substr(0, 200));
+    const std::string head = head_of(beside.path());
+    std::string_view rest = head;
+    const std::vector<double> shift = numbers_of(next_line(rest));
     if (shift.size() == 3) hints.push_back({{shift[0], shift[1], shift[2]}, name});
   }
 }

@@ -58,8 +58,8 @@ TEST_F(Files, ACommentMayNameWhatWasAdded) {
 }
 
 TEST_F(Files, AShiftThatDoesNotHelpIsNotNamed) {
-  EXPECT_THAT(said(map_at(2 * kPlace), map_at({0, 0, 0}), plain, with_shift), ::testing::IsEmpty());
-  EXPECT_THAT(said(map_at({0, 0, 0}), map_at({0, 0, 0}), plain, with_shift), ::testing::IsEmpty()) << "boxes meet";
+  EXPECT_THAT(said(map_at(2 * kPlace), map_at({0, 0, 0}), plain, with_shift), ::testing::SizeIs(0));
+  EXPECT_THAT(said(map_at({0, 0, 0}), map_at({0, 0, 0}), plain, with_shift), ::testing::SizeIs(0)) << "boxes meet";
 }
 
 TEST_F(Files, NothingIsSaidOfATransformThatWasGiven) {

@@ -6,7 +6,6 @@ namespace cmap {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using ::testing::SizeIs;
 using cmap::testing::TempFolder;
 
@@ -38,7 +37,7 @@ TEST(ShiftHint, IsNoneOfOtherLines) {
   for (const char* text : {"", "# offset\n", "# offset 1 2\n", "# offset 1 2 3 4\n", "# offset nan inf 3\n", "offset 1 2 3\n",
                            "ply\ncomment Generated 1 2 3\nend_header\n", "DATA ascii\n# offset 1 2 3\n"}) {
     const TempFolder folder;
-    EXPECT_THAT(find_shift_hints(folder.write("map.txt", text)), IsEmpty()) << text;
+    EXPECT_THAT(find_shift_hints(folder.write("map.txt", text)), SizeIs(0)) << text;
   }
 }
 
@@ -62,7 +61,7 @@ TEST(ShiftHint, OfOpenDroneMap) {
   }
   const TempFolder folder;
   folder.write("coords.txt", "651000.5 6861000\n1 2 3\n");
-  EXPECT_THAT(find_shift_hints(folder.write("map.ply", "ply\n")), IsEmpty());
+  EXPECT_THAT(find_shift_hints(folder.write("map.ply", "ply\n")), SizeIs(0));
 }
 
 TEST(ShiftHint, OfOpenSfmTwoFoldersAbove) {
@@ -77,15 +76,15 @@ TEST(ShiftHint, OfOpenSfmTwoFoldersAbove) {
   EXPECT_TRUE(hints[0].is_approximate);
   for (const char* broken : {"", "[1, 2]", "{\"latitude\": 45.0}", R"({"latitude": 95, "longitude": 9, "altitude": 1})"}) {
     folder.write("reference_lla.json", broken);
-    EXPECT_THAT(find_shift_hints(folder / "undistorted/depthmaps/merged.ply"), IsEmpty()) << broken;
+    EXPECT_THAT(find_shift_hints(folder / "undistorted/depthmaps/merged.ply"), SizeIs(0)) << broken;
   }
 }
 
 TEST(ShiftHint, IsNoneOfWhatIsNoFile) {
   const TempFolder folder;
-  EXPECT_THAT(find_shift_hints(folder.path()), IsEmpty());
-  EXPECT_THAT(find_shift_hints(folder / "missing.ply"), IsEmpty());
-  EXPECT_THAT(find_shift_hints("/dev/null"), IsEmpty());
+  EXPECT_THAT(find_shift_hints(folder.path()), SizeIs(0));
+  EXPECT_THAT(find_shift_hints(folder / "missing.ply"), SizeIs(0));
+  EXPECT_THAT(find_shift_hints("/dev/null"), SizeIs(0));
 }
 
 TEST(Utm, IsThatOfOtherFormulas) {
