@@ -12,9 +12,11 @@
 #include "cmap/align/trajectory.hpp"
 #include "cmap/core/parallel.hpp"
 #include "cmap/core/simd.hpp"
+#include "cmap/eval/map_error.hpp"
 #include "cmap/eval/point_errors.hpp"
 #include "cmap/eval/protocol.hpp"
 #include "cmap/eval/requirement.hpp"
+#include "cmap/eval/shift_warning.hpp"
 #include "cmap/io/output_file.hpp"
 #include "cmap/report/figure_module.hpp"
 #include "cmap/report/html_report.hpp"
@@ -153,6 +155,17 @@ cmap::ProtocolInputs protocol_inputs(const Arguments& a, const cmap::EvaluationO
   return inputs;
 }
 
+/// What is wrong with the points of a map is said of its file.
+template <class Evaluate>
+cmap::Evaluation blaming_files(const Arguments& arguments, Evaluate&& evaluate) {
+  try {
+    return evaluate();
+  } catch (const cmap::MapError& error) {
+    const std::string& file = error.which == "estimate" ? arguments.estimate : arguments.reference;
+    throw cmap::InputError(fmt::format("{}: {}", file, error.reason));
+  }
+}
+
 bool check_requirements(const std::vector<cmap::Requirement>& requirements, const cmap::Evaluation& evaluation) {
   bool all_hold = true;
   for (const cmap::Requirement& requirement : requirements) {
@@ -228,9 +241,11 @@ ExitCode run(const Arguments& arguments, const std::string& command) {
   run.stage_seconds.emplace_back("read", seconds());
   const cmap::InputDescription reference_description = describe(reference);
   const cmap::InputDescription estimate_description = describe(estimate);
-  const cmap::Evaluation evaluation =
-      cmap::evaluate_by_protocol(std::move(reference.cloud), std::move(estimate.cloud), options, inputs,
-                                 [&](std::string_view stage, double done) { progress.update(stage, done); });
+  cmap::Evaluation evaluation = blaming_files(arguments, [&] {
+    return cmap::evaluate_by_protocol(std::move(reference.cloud), std::move(estimate.cloud), options, inputs,
+                                      [&](std::string_view stage, double done) { progress.update(stage, done); });
+  });
+  cmap::warn_about_shifts(evaluation, arguments.reference, arguments.estimate);
   run.stage_seconds.insert(run.stage_seconds.end(), evaluation.stage_seconds.begin(), evaluation.stage_seconds.end());
   run.wall_s = seconds();
   const auto report = cmap::make_report(reference_description, estimate_description, evaluation, run);

@@ -8,6 +8,7 @@
 #include "eval/fairness_records.hpp"
 #include "eval/metric_records.hpp"
 #include "eval/peer_records.hpp"
+#include "eval/plausibility.hpp"
 #include "eval/preparation.hpp"
 
 namespace cmap {
@@ -73,6 +74,18 @@ void measure_distances(Findings& findings) {
                   [&] { findings.reference_to_estimate = stats(findings.pair.nearest_in_estimate); }});
 }
 
+void check_plausibility(const Findings& f, const CoordinateSteps& steps, std::vector<Warning>& warnings) {
+  warn_about_strays(f.pair, f.estimate_to_reference, f.reference_to_estimate, warnings);
+  const Bvh &reference = f.pair.reference.index, &estimate = f.pair.estimate.index;
+  const SampledSpacing spacing = sampled_spacing(reference);
+  warn_about_points("reference", reference.points, spacing, steps.reference, f.options, warnings);
+  warn_about_points("estimate", estimate.points, sampled_spacing(estimate), steps.estimate, f.options, warnings);
+  const bool by_threshold = std::ranges::any_of(metric_catalog(), [&](const MetricInfo& metric) {
+    return metric.per_threshold && f.selection.contains(metric.id);
+  });
+  if (by_threshold) warn_about_spacing(spacing, f.estimate_to_reference, f.options, warnings);
+}
+
 void append(std::vector<MetricRecord>& all, std::vector<MetricRecord> some) {
   std::ranges::move(some, std::back_inserter(all));
 }
@@ -96,7 +109,9 @@ Evaluation evaluate(PointCloud reference, PointCloud estimate, const EvaluationO
   StageClock clock(stage_seconds, progress);
 
   check_color(reference, estimate, selection, warnings);
-  clock.run("prepare", 0.15, [&] { prepare_clouds(reference, estimate, options, selection, T_ref_est, warnings); });
+  CoordinateSteps steps;
+  clock.run("prepare", 0.15,
+            [&] { steps = prepare_clouds(reference, estimate, options, selection, T_ref_est, warnings); });
   Evaluation result{
       .options = options, .T_ref_est = T_ref_est, .pair = index_and_pair(reference, estimate, options.index, clock)};
 
@@ -105,6 +120,7 @@ Evaluation evaluate(PointCloud reference, PointCloud estimate, const EvaluationO
     measure_distances(findings);
     result.overlap = findings.estimate_to_reference.share_within(options.thresholds_m.size());
     result.rmse_m = std::sqrt(findings.estimate_to_reference.mean_sq_m2);
+    check_plausibility(findings, steps, warnings);
   });
   if (result.overlap == 0.0) {
     warnings.push_back({"no_overlap", "no estimated point is within the overlap distance of the reference"});

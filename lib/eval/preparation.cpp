@@ -6,14 +6,13 @@
 
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
+#include "cmap/eval/map_error.hpp"
 #include "cmap/eval/metric_catalog.hpp"
 #include "cmap/spatial/voxel_map.hpp"
+#include "eval/plausibility.hpp"
 
 namespace cmap {
 namespace {
-
-constexpr double kFarApart_m = 1e4;
-constexpr double kDifferentUnits = 100.0;
 
 void require_finite_points(const PointCloud& cloud, const char* which) {
   if (cloud.positions.empty()) throw InputError(fmt::format("the {} has no points", which));
@@ -26,18 +25,52 @@ void require_finite_points(const PointCloud& cloud, const char* which) {
   if (!finite) throw InputError(fmt::format("the {} has a point that is not finite", which));
 }
 
-/// Voxels too small to be counted are refused by the option's name, and before the work.
-void check_voxels(const char* option, double size_m, const Box3d& box) {
+bool countable(const Box3d& box, double size_m) {
   try {
-    const VoxelFrame countable(box, size_m);
+    const VoxelFrame frame(box, size_m);
+    return true;
+  } catch (const UsageError&) {
+    return false;
+  }
+}
+
+/// One map, and the points of it that matter to its size.
+struct Shape {
+  const PointCloud& cloud;
+  CloudBody body;
+  const char* which;
+};
+
+/// Voxels that cannot be counted are refused before the work, and the blame goes where it belongs: to the points that
+/// stretch the map, to the map where the size is the default, or to the option.
+void check_voxels(const char* option, double size_m, double default_m, const Shape& map) {
+  const Box3d& box = map.body.all;
+  if (countable(box, size_m)) return;
+  if (map.body.n_strays > 0 && countable(map.body.box, size_m)) {
+    const Eigen::Vector3d x = map.cloud.world(map.body.farthest);
+    throw MapError(map.which,
+                   fmt::format("point {} of {}, at ({:.10g}, {:.10g}, {:.10g}), lies {:.4g} m from nearly all others, too "
+                               "far to count voxels up to it; leave out such points, {} here, as with --crop",
+                               map.body.farthest + 1, map.cloud.size(), x.x(), x.y(), x.z(), map.body.farthest_m,
+                               map.body.n_strays));
+  }
+  if (size_m == default_m) {
+    throw MapError(map.which, fmt::format("the points span {:.4g} m, too much to count voxels of {} m: are they in meters?",
+                                          (box.max - box.min).maxCoeff(), size_m));
+  }
+  try {
+    const VoxelFrame frame(box, size_m);
   } catch (const UsageError& error) {
     throw UsageError(fmt::format("{}: {}", option, error.what()));
   }
 }
 
-void check_voxels_of_metrics(const EvaluationOptions& options, const MetricSelection& selection, const Box3d& box) {
-  if (selection.contains("color_consistency")) check_voxels("ccs-voxel", options.ccs_voxel_m, box);
-  if (selection.needs_gaussians) check_voxels("awd-voxel", options.awd_voxel_m, box);
+void check_voxels_of_metrics(const EvaluationOptions& options, const MetricSelection& selection, const Shape& map) {
+  const EvaluationOptions defaults;
+  if (selection.contains("color_consistency")) {
+    check_voxels("ccs-voxel", options.ccs_voxel_m, defaults.ccs_voxel_m, map);
+  }
+  if (selection.needs_gaussians) check_voxels("awd-voxel", options.awd_voxel_m, defaults.awd_voxel_m, map);
 }
 
 void crop_and_thin(PointCloud& cloud, const EvaluationOptions& options, const char* which) {
@@ -46,31 +79,8 @@ void crop_and_thin(PointCloud& cloud, const EvaluationOptions& options, const ch
     if (cloud.positions.empty()) throw UnsupportedError(fmt::format("crop: no point of the {} is inside", which));
   }
   if (options.voxel_m) {
-    check_voxels("voxel", *options.voxel_m, bounds(cloud));
+    check_voxels("voxel", *options.voxel_m, 0.0, {cloud, body_of(cloud), which});
     cloud = voxel_thinned(cloud, *options.voxel_m);
-  }
-}
-
-double gap_between(const Box3d& a, const Box3d& b) {
-  return (a.min - b.max).cwiseMax(b.min - a.max).cwiseMax(0.0).norm();
-}
-
-void warn_about_frames(const Box3d& a, const Box3d& b, std::vector<Warning>& warnings) {
-  const double size_a = (a.max - a.min).norm();
-  const double size_b = (b.max - b.min).norm();
-  const double gap = gap_between(a, b);
-  if (gap > 0.0) {
-    warnings.push_back({"units_or_frame_mismatch",
-                        fmt::format("the maps' boxes are {:.4g} m apart: are both in the reference frame?", gap)});
-  } else if (std::max(size_a, size_b) > kDifferentUnits * std::min(size_a, size_b)) {
-    warnings.push_back(
-        {"units_or_frame_mismatch",
-         fmt::format("the reference spans {:.4g} m and the estimate {:.4g} m: are both in meters?", size_a, size_b)});
-  }
-  if (gap > kFarApart_m) {
-    warnings.push_back(
-        {"precision_reduced",
-         fmt::format("the maps are {:.4g} km apart: distances are rounded to single precision there", gap / 1e3)});
   }
 }
 
@@ -84,25 +94,28 @@ void rebase(PointCloud& cloud, const Eigen::Vector3d& origin) {
 
 }  // namespace
 
-void prepare_clouds(PointCloud& reference, PointCloud& estimate, const EvaluationOptions& options,
-                    const MetricSelection& selection, const Eigen::Matrix4d& T_ref_est,
-                    std::vector<Warning>& warnings) {
+CoordinateSteps prepare_clouds(PointCloud& reference, PointCloud& estimate, const EvaluationOptions& options,
+                               const MetricSelection& selection, const Eigen::Matrix4d& T_ref_est,
+                               std::vector<Warning>& warnings) {
   require_finite_points(reference, "reference");
   require_finite_points(estimate, "estimate");
+  const double finest_m = finest_step_needed_m(options);
+  const CoordinateSteps steps{coarse_step(reference, finest_m), coarse_step(estimate, finest_m)};
   if (T_ref_est != Eigen::Matrix4d::Identity()) estimate = transformed(estimate, T_ref_est);
   crop_and_thin(reference, options, "reference");
   crop_and_thin(estimate, options, "estimate");
 
-  const Box3d reference_box = bounds(reference);
-  const Box3d estimate_box = bounds(estimate);
-  for (const Box3d& box : {reference_box, estimate_box}) check_voxels_of_metrics(options, selection, box);
-  warn_about_frames(reference_box, estimate_box, warnings);
-  if (gap_between(reference_box, estimate_box) <= kFarApart_m) {
-    const Eigen::Vector3d origin =
-        choose_origin({reference_box.min.cwiseMin(estimate_box.min), reference_box.max.cwiseMax(estimate_box.max)});
+  const CloudBody reference_body = body_of(reference), estimate_body = body_of(estimate);
+  check_voxels_of_metrics(options, selection, {reference, reference_body, "reference"});
+  check_voxels_of_metrics(options, selection, {estimate, estimate_body, "estimate"});
+  warn_about_frames(reference_body, estimate_body, warnings);
+  const Box3d &a = reference_body.box, &b = estimate_body.box;
+  if (gap_between(a, b) <= kFarApart_m) {
+    const Eigen::Vector3d origin = choose_origin({a.min.cwiseMin(b.min), a.max.cwiseMax(b.max)});
     rebase(reference, origin);
     rebase(estimate, origin);
   }
+  return steps;
 }
 
 }  // namespace cmap

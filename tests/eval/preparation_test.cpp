@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cmap/core/color.hpp"
+#include "cmap/eval/map_error.hpp"
 #include "eval/eval_testing.hpp"
 
 namespace cmap {
@@ -133,13 +134,35 @@ TEST(Preparation, WarnsOfBoxesApart) {
   EXPECT_THAT(maps.warnings[0].message, HasSubstr("4 m apart"));
 }
 
-TEST(Preparation, WarnsOfSizesAHundredfoldApart) {
-  for (const auto& [side, warns] : {std::pair{4.0f * 99, false}, {4.0f * 101, true}}) {
-    const Prepared maps = prepared(kCorners, gray_map({{0, 0, 0}, {side, side, side}}));
-    EXPECT_EQ(warning_ids(maps.warnings),
-              warns ? std::vector<std::string>{"units_or_frame_mismatch"} : std::vector<std::string>{})
-        << side;
+/// A hundred points of a square meter, and one that may be far from them.
+PointCloud square_with(const Eigen::Vector3f& last) {
+  std::vector<Eigen::Vector3f> points;
+  for (int i = 0; i < 100; ++i) points.emplace_back(0.1f * static_cast<float>(i % 10), 0.1f * static_cast<float>(i / 10), 0.0f);
+  points.push_back(last);
+  return gray_map(points);
+}
+
+TEST(Preparation, PutsTheOriginWhereThePointsAreWhateverOneStrayDoes) {
+  // The whole box would give (1000000, 0, 0), about which floats have steps of 1/16 m.
+  const Prepared maps = prepared(square_with({0, 0, 0}), square_with({1e6f, 0, 0}));
+  EXPECT_EQ(maps.estimate.origin, Eigen::Vector3d(0, 0, 0));
+}
+
+TEST(Preparation, NamesThePointThatIsTooFarToCountVoxels) {
+  for (const Eigen::Vector3f& far : {Eigen::Vector3f(5e8f, 0, 0), Eigen::Vector3f(0, 0, -9e8f)}) {
+    const auto estimate = [&] { prepared(square_with({0, 0, 0}), square_with(far)); };
+    EXPECT_THAT(refusal_of<MapError>(estimate), HasSubstr("the estimate: point 101 of 101, at ("));
+    const auto reference = [&] { prepared(square_with(far), square_with({0, 0, 0})); };
+    EXPECT_THAT(refusal_of<MapError>(reference), HasSubstr("the reference: point 101 of 101, at ("));
   }
+}
+
+TEST(Preparation, VoxelsThatNobodyChoseAreNotToBlame) {
+  const PointCloud wide = gray_map({{0, 0, 0}, {6e8f, 0, 0}});
+  EXPECT_THAT(refusal_of<MapError>([&] { prepared(kCorners, wide); }), HasSubstr("are they in meters?"));
+  EvaluationOptions options;
+  options.ccs_voxel_m = 0.01;
+  EXPECT_THAT(refusal_of<UsageError>([&] { prepared(kCorners, wide, options); }), HasSubstr("ccs-voxel: "));
 }
 
 TEST(Preparation, OnePointMapsAreMaps) {

@@ -1,0 +1,132 @@
+#include "eval/coordinate_step.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+#include "eval/sampled_indices.hpp"
+
+namespace cmap {
+namespace {
+
+constexpr std::size_t kSample = 10000;
+constexpr std::size_t kFewest = 4;  // below, anything may be chance
+constexpr double kShare = 0.1;      // of the coordinates that must be coarse
+
+/// One axis of the sample: what the file said, as far as our offsets kept it, and how well they did.
+struct Axis {
+  std::vector<double> world;
+  std::vector<double> rounding_m;  ///< distance of float32 numbers at the offset
+
+  double largest() const {
+    return *std::ranges::max_element(world, {}, [](double x) { return std::abs(x); });
+  }
+};
+
+constexpr int kFloat32Bits = 24, kFloat16Bits = 11;
+
+/// Distance of neighboring floating-point numbers of that many bits at x.
+double float_step(double x, int bits) { return x == 0.0 ? 0.0 : std::ldexp(1.0, std::ilogb(x) + 1 - bits); }
+
+Axis sampled_axis(const PointCloud& cloud, int axis) {
+  Axis sampled;
+  for (const std::size_t i : sampled_indices(cloud.size(), kSample)) {
+    sampled.world.push_back(cloud.world(i)[axis]);
+    sampled.rounding_m.push_back(float_step(static_cast<double>(cloud.positions[i][axis]), kFloat32Bits));
+  }
+  return sampled;
+}
+
+/// The value that a tenth of them reach, so that single far points do not decide.
+double reached_by_share(std::vector<double> values) {
+  const auto place =
+      values.end() - std::max<std::ptrdiff_t>(1, std::lround(kShare * static_cast<double>(values.size())));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+/// Whether all coordinates are numbers of that many bits: floats are a property of all three axes.
+bool all_of_bits(const std::array<Axis, 3>& axes, int bits) {
+  return std::ranges::all_of(axes, [&](const Axis& axis) {
+    return std::ranges::all_of(axis.world, [&](double x) { return x == 0.0 || std::fmod(x, float_step(x, bits)) == 0.0; });
+  });
+}
+
+/// Step of such floats at the axis' coordinates; 0 where it is finer than the limit, or where even multiples of it or
+/// odd ones are missing: coordinates of a raster are such numbers by chance.
+double binary_step(const Axis& axis, int bits, double limit_m) {
+  std::vector<double> steps;
+  std::size_t n_odd = 0, n_coarse = 0;
+  for (const double x : axis.world) {
+    steps.push_back(float_step(x, bits));
+    if (steps.back() <= limit_m) continue;
+    ++n_coarse;
+    n_odd += std::fmod(std::abs(x) / steps.back(), 2.0) == 1.0 ? 1U : 0U;
+  }
+  const double step_m = reached_by_share(steps);
+  const double odd_share = static_cast<double>(n_odd) / static_cast<double>(std::max<std::size_t>(n_coarse, 1));
+  return step_m > limit_m && odd_share > kShare && odd_share < 1.0 - kShare ? step_m : 0.0;
+}
+
+/// Whether all values are whole multiples of the step, as far as our own rounding lets one see.
+bool all_multiples(const Axis& axis, double step_m) {
+  for (std::size_t i = 0; i < axis.world.size(); ++i) {
+    const double rounding_m = 0.51 * axis.rounding_m[i];
+    const double from_multiple_m = std::abs(axis.world[i] - std::round(axis.world[i] / step_m) * step_m);
+    if (rounding_m > step_m / 8.0 || from_multiple_m > rounding_m + 1e-15 * std::abs(axis.world[i])) return false;
+  }
+  return true;
+}
+
+/// Whether the values differ by single steps too: in a raster of 0.2, 0.25 or 0.5 they do not.
+bool uses_every_step(const Axis& axis, double step_m) {
+  const std::int64_t first = std::llround(axis.world.front() / step_m);
+  std::int64_t divisor = 0;
+  for (const double x : axis.world) divisor = std::gcd(divisor, std::llround(x / step_m) - first);
+  return divisor == 1;
+}
+
+/// The largest power of ten of which all values are multiples, if it is coarser than the limit; 0 otherwise. Near zero
+/// only tenths and hundredths of many points are believed: whole meters there are a grid that somebody laid out.
+double decimal_step(const Axis& axis, double limit_m) {
+  constexpr double kSixDigits = 1e5;
+  constexpr std::size_t kMany = 100;
+  const bool large = std::abs(axis.largest()) >= kSixDigits;
+  if (!large && axis.world.size() < kMany) return 0.0;
+  for (const double step_m : {100.0, 10.0, 1.0, 0.1, 0.01, 0.001}) {
+    if (step_m <= limit_m) break;
+    if ((!large && step_m >= 1.0) || !all_multiples(axis, step_m)) continue;
+    return uses_every_step(axis, step_m) ? step_m : 0.0;
+  }
+  return 0.0;
+}
+
+void keep_coarser(std::optional<CoordinateStep>& coarsest, double step_m, const std::array<Axis, 3>& axes, int axis,
+                  CoordinateStep::Cause cause) {
+  if (step_m == 0.0 || (coarsest && coarsest->step_m >= step_m)) return;
+  coarsest = CoordinateStep{step_m, axis, axes[static_cast<std::size_t>(axis)].largest(), cause};
+}
+
+}  // namespace
+
+std::optional<CoordinateStep> coarse_step(const PointCloud& cloud, double limit_m) {
+  using enum CoordinateStep::Cause;
+  if (cloud.size() < kFewest) return std::nullopt;
+  const std::array<Axis, 3> axes{sampled_axis(cloud, 0), sampled_axis(cloud, 1), sampled_axis(cloud, 2)};
+  const bool float16 = all_of_bits(axes, kFloat16Bits), float32 = all_of_bits(axes, kFloat32Bits);
+  std::optional<CoordinateStep> coarsest;
+  for (int a = 0; a < 3; ++a) {
+    const Axis& axis = axes[static_cast<std::size_t>(a)];
+    const double held_m = reached_by_share(axis.rounding_m);
+    keep_coarser(coarsest, held_m > limit_m ? held_m : 0.0, axes, a, kOwnOffsets);
+    if (float16) keep_coarser(coarsest, binary_step(axis, kFloat16Bits, limit_m), axes, a, kFloat16);
+    if (float32) keep_coarser(coarsest, binary_step(axis, kFloat32Bits, limit_m), axes, a, kFloat32);
+    keep_coarser(coarsest, decimal_step(axis, limit_m), axes, a, kDigits);
+  }
+  return coarsest;
+}
+
+}  // namespace cmap

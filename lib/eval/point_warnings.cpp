@@ -1,0 +1,141 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "cmap/core/parallel.hpp"
+#include "cmap/spatial/k_nearest.hpp"
+#include "eval/plausibility.hpp"
+#include "eval/sampled_indices.hpp"
+
+namespace cmap {
+namespace {
+
+constexpr double kManyRepeated = 0.01;
+constexpr std::size_t kFewest = 20;  // points from which on shares and medians say something
+
+/// Distance to the nearest point at another place, 0 where none is among the neighbors.
+double nearest_elsewhere_m(const PointBlocks& points, std::size_t slot, std::span<const std::uint32_t> neighbors) {
+  for (const std::uint32_t neighbor : neighbors) {
+    if (neighbor == kNoNeighbor) break;
+    const double distance_m = (points.offset(neighbor) - points.offset(slot)).cast<double>().norm();
+    if (distance_m > 0.0) return distance_m;
+  }
+  return 0.0;
+}
+
+/// 64 bits that differ for different places, but for a chance of one in 10^5 among ten million points.
+std::uint64_t place_key(const Eigen::Vector3f& p) {
+  std::uint64_t key = 0;
+  for (const float value : {p.x(), p.y(), p.z()}) {
+    key ^= std::bit_cast<std::uint32_t>(value + 0.0F);  // -0 is 0
+    key *= 0x9e3779b97f4a7c15ull;
+    key ^= key >> 29;
+    key *= 0xbf58476d1ce4e5b9ull;
+    key ^= key >> 32;
+  }
+  return key;
+}
+
+std::uint64_t n_repeated(const PointBlocks& points) {
+  Array<std::uint64_t> keys(points.size);
+  parallel_chunks(points.size, kLoopChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t slot = begin; slot < end; ++slot) keys[slot] = place_key(points.offset(slot));
+  });
+  std::ranges::sort(keys);
+  return points.size - static_cast<std::uint64_t>(std::ranges::unique(keys).begin() - keys.begin());
+}
+
+/// The steps of a raster are where its points are.
+bool is_raster(const CoordinateStep& step, const SampledSpacing& spacing) {
+  return step.cause == CoordinateStep::Cause::kDigits && spacing.spacing_m < 1.5 * step.step_m &&
+         spacing.repeated_share < kManyRepeated;
+}
+
+Warning step_warning(std::string_view which, const CoordinateStep& step, const EvaluationOptions& options) {
+  const std::string steps = fmt::format("the {}'s {} comes in steps of {:.3g} m", which, "xyz"[step.axis], step.step_m);
+  const std::string needed = fmt::format("coarser than a tenth of the smallest threshold, {:g} m",
+                                         *std::ranges::min_element(options.thresholds_m));
+  switch (step.cause) {
+    case CoordinateStep::Cause::kFloat16:
+    case CoordinateStep::Cause::kFloat32:
+      return {"coarse_coordinates",
+              fmt::format("{}, as {} has at {:.7g} m, {}: store the map in {}, or take an offset off it first", steps,
+                          step.cause == CoordinateStep::Cause::kFloat16 ? "float16" : "float32", step.coordinate, needed,
+                          step.cause == CoordinateStep::Cause::kFloat16 ? "float32" : "double precision")};
+    case CoordinateStep::Cause::kDigits:
+      return {"coarse_coordinates",
+              fmt::format("{}, as if rounded to few digits ({:.10g}), {}: store it with more digits", steps,
+                          step.coordinate, needed)};
+    case CoordinateStep::Cause::kOwnOffsets:
+      break;
+  }
+  return {"precision_reduced",
+          fmt::format("{} here, as {:.7g} m is far from the map's origin for single precision, {}: compare parts of the map "
+                      "as files of their own, without far strays",
+                      steps, step.coordinate, needed)};
+}
+
+}  // namespace
+
+double finest_step_needed_m(const EvaluationOptions& options) {
+  return *std::ranges::min_element(options.thresholds_m) / 10.0;
+}
+
+SampledSpacing sampled_spacing(const Bvh& index) {
+  constexpr std::size_t kSample = 2000, kNeighbors = 8;
+  Array<std::uint32_t> slots;
+  for (const std::size_t slot : sampled_indices(index.points.size, kSample)) {
+    slots.push_back(static_cast<std::uint32_t>(slot));
+  }
+  const Array<std::uint32_t> neighbors = find_k_nearest(index, chosen_points(index.points, slots), kNeighbors);
+  std::vector<double> distances_m;
+  std::size_t repeated = 0;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    const std::span<const std::uint32_t> found(neighbors.data() + i * kNeighbors, kNeighbors);
+    const double distance_m = nearest_elsewhere_m(index.points, slots[i], found);
+    if (distance_m > 0.0) distances_m.push_back(distance_m);
+    if (found[1] != kNoNeighbor && index.points.offset(found[1]) == index.points.offset(slots[i])) ++repeated;
+  }
+  SampledSpacing spacing{std::numeric_limits<double>::quiet_NaN(),
+                       static_cast<double>(repeated) / static_cast<double>(slots.size())};
+  if (distances_m.size() < kFewest) return spacing;
+  const auto middle = distances_m.begin() + static_cast<std::ptrdiff_t>(distances_m.size() / 2);
+  std::nth_element(distances_m.begin(), middle, distances_m.end());
+  spacing.spacing_m = *middle;
+  return spacing;
+}
+
+void warn_about_points(std::string_view which, const PointBlocks& points, const SampledSpacing& spacing,
+                       const std::optional<CoordinateStep>& step, const EvaluationOptions& options,
+                       std::vector<Warning>& warnings) {
+  const bool coarse = step && !is_raster(*step, spacing);
+  if (coarse) warnings.push_back(step_warning(which, *step, options));
+  // Rounded coordinates meet in the same places: said already.
+  if (points.size < kFewest || spacing.repeated_share < kManyRepeated || (coarse && 2.0 * step->step_m > spacing.spacing_m)) return;
+  const std::uint64_t n = n_repeated(points);
+  warnings.push_back(
+      {"repeated_points",
+       fmt::format("{} of the {}'s {} points ({:.3g} %) are copies: they stand at the same place as another one, and count "
+                   "in every mean, in color consistency and towards the points that AWD and MME need",
+                   n, which, points.size, 100.0 * static_cast<double>(n) / static_cast<double>(points.size))});
+}
+
+void warn_about_spacing(const SampledSpacing& reference, const DistanceStats& estimate_to_reference,
+                        const EvaluationOptions& options, std::vector<Warning>& warnings) {
+  std::vector<double> missed_m;
+  for (std::size_t t = 0; t < options.thresholds_m.size(); ++t) {
+    const bool below = options.thresholds_m[t] < reference.spacing_m;
+    if (below && estimate_to_reference.share_within(t) < 0.5) missed_m.push_back(options.thresholds_m[t]);
+  }
+  if (missed_m.empty()) return;
+  warnings.push_back(
+      {"sparse_reference",
+       fmt::format("the reference's points have a spacing of {:.3g} m, above the threshold{} {} m: most of the estimate is "
+                   "farther than that from any of them, which may say more about the reference than about the estimate",
+                   reference.spacing_m, missed_m.size() == 1 ? "" : "s", fmt::join(missed_m, ", "))});
+}
+
+}  // namespace cmap
