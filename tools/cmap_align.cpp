@@ -29,7 +29,8 @@ constexpr const char* kExample =
 struct Arguments {
   std::string source, target, method = "gicp", initial, output, json, fit = "sim3";
   double voxel_m = 0.0, max_distance_m = 0.0, tau_m = 0.0, max_gap_s = 0.15;
-  bool scale = false;
+  bool scale = false, keep_noise = false;
+  std::vector<std::uint8_t> classes;
   cmap::CommonArguments common;
 };
 
@@ -58,6 +59,10 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("--max-gap", a.max_gap_s, "poses farther apart are not interpolated between [0.15]")
       ->type_name("S")
       ->check(positive);
+  app.add_flag("--keep-noise", a.keep_noise, "LAS: points of the noise classes 7 and 18 count too");
+  app.add_option("--classes", a.classes, "LAS: only points of these classes count (2 is ground)")
+      ->type_name("N,...")
+      ->delimiter(',');
   cmap::add_common_options(app, a.common, "no table and no warnings");
   cmap::refuse_empty(app, {"--output", "--json", "--initial"});
 }
@@ -79,6 +84,9 @@ void refuse_unused(const CLI::App& app, const std::string& method) {
   refuse("--tau", {"tanksandtemples"});
   refuse("--fit", {"trajectory"});
   refuse("--max-gap", {"trajectory"});
+  for (const char* of_maps : {"--keep-noise", "--classes"}) {
+    refuse(of_maps, {"icp", "plane", "gicp", "sim3", "global", "tanksandtemples"});
+  }
 }
 
 struct Result {
@@ -116,7 +124,7 @@ Result align_maps(const Arguments& a) {
   if (a.voxel_m > 0.0) options.voxel_m = a.voxel_m;
   if (a.max_distance_m > 0.0) options.max_distance_m = a.max_distance_m;
   options.with_scale = a.scale;
-  const auto [source, target] = cmap::read_both(a.source, a.target);
+  const auto [source, target] = cmap::read_both(a.source, a.target, {.keep_noise = a.keep_noise, .classes = a.classes});
   if (a.method == "tanksandtemples") return run_tanks_and_temples(a, source.cloud, target.cloud, options.T_initial);
   Result result{cmap::align(source.cloud, target.cloud, cmap::align_method_from_name(a.method), options), {}, {}};
   result.json = cmap::alignment_json(result.alignment);
