@@ -237,7 +237,7 @@ ExitCode run(const Arguments& arguments, const std::string& command) {
   cmap::ProgressBar progress(!arguments.common.quiet);
   progress.update("read", 0.0);
   auto [reference, estimate] =
-      cmap::read_both(arguments.reference, arguments.estimate, cmap::ReadOptions{.sha256 = true});
+      cmap::read_both(arguments.reference, arguments.estimate, cmap::read_options(options, true));
   run.stage_seconds.emplace_back("read", seconds());
   const cmap::InputDescription reference_description = describe(reference);
   const cmap::InputDescription estimate_description = describe(estimate);

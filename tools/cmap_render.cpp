@@ -78,6 +78,7 @@ void add_options(CLI::App& app, Arguments& a) {
   cmap::add_common_options(app, a.common, "no progress, and not which device OpenGL draws by");
   cmap::refuse_empty(app, {"--output", "--turntable", "--camera", "--color-map", "--renderer", "--transform"});
   a.evaluation.add_to(app, [](std::string_view name) {
+    if (name == "keep-noise" || name == "classes") return true;
     return name.starts_with("lcr-") ? name != "lcr-curve" : name.starts_with("ccs-") || name.starts_with("awd-");
   });
 }
@@ -192,7 +193,7 @@ void draw(const Arguments& a, const Scene& scene, const Plan& plan, cmap::Progre
 void draw_map(const Arguments& a, const Plan& plan, cmap::ProgressBar& progress) {
   if (!a.panels.empty() || !a.transform.empty()) throw cmap::UsageError("--panels and --transform need a second map");
   progress.update("read", 0.0);
-  const cmap::IndexedMap map(cmap::read_point_cloud(a.map).cloud);
+  const cmap::IndexedMap map(cmap::read_point_cloud(a.map, cmap::read_options(plan.evaluation)).cloud);
   const std::vector<cmap::Layer> layers{cmap::make_layer(map, a.map, plan.layer)};
   const auto describe = [&](const cmap::PointBlocks&, std::size_t slot) { return cmap::describe_point(map, slot); };
   draw(a, {a.map, layers, map.index.points, describe}, plan, progress);
@@ -215,7 +216,7 @@ void draw_pair(const Arguments& a, const Plan& plan, cmap::ProgressBar& progress
   const Eigen::Matrix4d T_ref_est = cmap::transform_or_identity(a.transform, warnings);
   if (!a.common.quiet) cmap::print_warnings(warnings);
   progress.update("read", 0.0);
-  auto [reference, estimate] = cmap::read_both(a.map, a.estimate);
+  auto [reference, estimate] = cmap::read_both(a.map, a.estimate, cmap::read_options(plan.evaluation));
   const bool has_color = reference.cloud.has_color() && estimate.cloud.has_color();
   const cmap::Evaluation evaluation =
       cmap::evaluate(std::move(reference.cloud), std::move(estimate.cloud), evaluation_options(a, plan, has_color),

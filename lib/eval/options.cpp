@@ -82,6 +82,18 @@ std::vector<std::string> metric_names(const char* name, const Json& value) {
   return checked.metrics;
 }
 
+/// An empty list means all.
+std::vector<std::uint8_t> classes(const char* name, const Json& value) {
+  if (!value.is_array()) refuse(name, value, "is not a list of classes");
+  std::vector<std::uint8_t> list;
+  for (const Json& item : value) {
+    const double v = number(name, item);
+    if (v != std::floor(v) || v < 0.0 || v > 255.0) refuse(name, item, "is not a whole number from 0 to 255");
+    list.push_back(static_cast<std::uint8_t>(v));
+  }
+  return list;
+}
+
 Box3d crop_box(const char* name, const Json& value) {
   const std::vector<double> v = numbers(name, value);
   if (v.size() != 6) refuse(name, value, "is not xmin,ymin,zmin,xmax,ymax,zmax");
@@ -274,11 +286,19 @@ const std::vector<OptionSpec>& evaluation_option_specs() {
                   positive(n, value), o.sensitivity_rotation_deg),
       CMAP_OPTION("index", kWord, "bvh|flann", "nearest-neighbor index", index, index_kind(n, value),
                   o.index == IndexKind::kFlann ? "flann" : "bvh"),
+      CMAP_OPTION("keep-noise", kFlag, "", "LAS: points of the noise classes 7 and 18 count too", keep_noise,
+                  flag(n, value), o.keep_noise),
+      CMAP_OPTION("classes", kNumbers, "N,...", "LAS: only points of these classes count (2 is ground)", classes,
+                  classes(n, value), o.classes),
   };
   return specs;
 }
 
 #undef CMAP_OPTION
+
+ReadOptions read_options(const EvaluationOptions& options, bool sha256) {
+  return {.sha256 = sha256, .keep_noise = options.keep_noise, .classes = options.classes};
+}
 
 double tanks_and_temples_tau_m(const EvaluationOptions& options) {
   return options.tanks_and_temples_tau_m.value_or(std::ranges::max(options.thresholds_m));

@@ -72,6 +72,24 @@ void ByteSource::read(std::span<std::byte> out, std::string_view what) {
   }
 }
 
+std::size_t ByteSource::read_at(std::uint64_t offset, std::span<std::byte> out) const {
+  if (offset >= size_) return 0;
+  out = out.first(std::min<std::uint64_t>(out.size(), size_ - offset));
+  if (!memory_.empty()) {
+    std::memcpy(out.data(), memory_.data() + offset, out.size());
+    return out.size();
+  }
+  std::size_t filled = 0;
+  while (filled < out.size()) {
+    const ssize_t got =
+        ::pread(file_, out.data() + filled, out.size() - filled, static_cast<off_t>(offset + filled));
+    if (got < 0 && errno != EINTR) fail("reading failed at byte {}: {}", offset + filled, std::strerror(errno));
+    if (got == 0) break;  // the file became shorter
+    if (got > 0) filled += static_cast<std::size_t>(got);
+  }
+  return filled;
+}
+
 void ByteSource::require(std::uint64_t n, std::string_view what) const {
   if (n > remaining()) {
     fail("truncated: {} at byte {} takes {} bytes, but the file ends at byte {}", what, position_, n, size_);

@@ -54,6 +54,8 @@ class ByteSource {
   void skip(std::uint64_t n, std::string_view what);
   /// Copies the next bytes.
   void read(std::span<std::byte> out, std::string_view what);
+  /// Copies bytes from anywhere without moving; the number of bytes copied, fewer only at the end.
+  std::size_t read_at(std::uint64_t offset, std::span<std::byte> out) const;
   /// Throws InputError unless n bytes are left.
   void require(std::uint64_t n, std::string_view what) const;
 

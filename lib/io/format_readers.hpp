@@ -8,7 +8,9 @@ namespace cmap {
 /// Readers of one format each, from the first byte of the source on. They fill in format, counts and notes of `info`.
 PointCloud read_ply(ByteSource& source, FileInfo& info);
 PointCloud read_pcd(ByteSource& source, FileInfo& info);
-PointCloud read_las(ByteSource& source, FileInfo& info);
+/// Uncompressed LAS 1.0 to 1.5. Lengths become meters, by the file's description of its coordinate system. Throws
+/// UnsupportedError for longitude and latitude, and where no point is of the classes asked for.
+PointCloud read_las(ByteSource& source, FileInfo& info, const ReadOptions& options = {});
 PointCloud read_text(ByteSource& source, FileInfo& info);
 /// An array of shape (..., 3).
 PointCloud read_npy_cloud(ByteSource& source, FileInfo& info);
@@ -16,6 +18,6 @@ PointCloud read_npy_cloud(ByteSource& source, FileInfo& info);
 PointCloud read_npz_cloud(ByteSource& source, FileInfo& info);
 
 /// What read_point_cloud() does, on a source that is already open.
-PointCloudFile read_point_cloud(ByteSource& source);
+PointCloudFile read_point_cloud(ByteSource& source, const ReadOptions& options = {});
 
 }  // namespace cmap

@@ -13,10 +13,14 @@ std::uint64_t FileInfo::n_left_out() const {
   return n;
 }
 
-PointCloudFile read_point_cloud(ByteSource& source) {
+PointCloudFile read_point_cloud(ByteSource& source, const ReadOptions& options) {
   PointCloudFile file;
   file.info.path = source.name();
-  switch (detect_format(source)) {
+  const FileFormat format = detect_format(source);
+  if (!options.classes.empty() && format != FileFormat::kLas) {
+    throw UnsupportedError(source.name() + ": classes were asked for, but only LAS files have them");
+  }
+  switch (format) {
     case FileFormat::kPly:
       file.cloud = read_ply(source, file.info);
       break;
@@ -24,7 +28,7 @@ PointCloudFile read_point_cloud(ByteSource& source) {
       file.cloud = read_pcd(source, file.info);
       break;
     case FileFormat::kLas:
-      file.cloud = read_las(source, file.info);
+      file.cloud = read_las(source, file.info, options);
       break;
     case FileFormat::kNpy:
       file.cloud = read_npy_cloud(source, file.info);
@@ -42,7 +46,7 @@ PointCloudFile read_point_cloud(ByteSource& source) {
 
 PointCloudFile read_point_cloud(const std::filesystem::path& path, const ReadOptions& options) {
   ByteSource source(path, options.sha256);
-  return read_point_cloud(source);
+  return read_point_cloud(source, options);
 }
 
 std::pair<PointCloudFile, PointCloudFile> read_both(const std::filesystem::path& first,

@@ -1,7 +1,5 @@
 #include "io/record_reader.hpp"
 
-#include <algorithm>
-
 namespace cmap {
 
 RecordLayout record_layout(const ByteSource& source, std::span<const Field> fields, const PointSchema& schema) {
@@ -44,14 +42,9 @@ PointColumns columns_at(const RecordLayout& layout, const std::byte* data) {
 }
 
 void read_records(ByteSource& source, std::uint64_t n, const RecordLayout& layout, CloudBuilder& builder) {
-  while (n > 0) {
-    const auto window = source.peek(layout.bytes);
-    if (window.size() < layout.bytes) require_records(source, n, layout.bytes);
-    const std::size_t count = std::min<std::uint64_t>(n, window.size() / layout.bytes);
-    builder.append(columns_at(layout, window.data()), count);
-    source.advance(count * layout.bytes);
-    n -= count;
-  }
+  for_each_block(source, n, layout.bytes, [&](const std::byte* data, std::size_t count) {
+    builder.append(columns_at(layout, data), count);
+  });
 }
 
 }  // namespace cmap

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 
 #include "io/byte_source.hpp"
@@ -25,5 +26,18 @@ void read_records(ByteSource& source, std::uint64_t n, const RecordLayout& layou
 
 /// The columns of the records that start at `data`.
 PointColumns columns_at(const RecordLayout& layout, const std::byte* data);
+
+/// Calls use(data, count) for n records, block by block. Throws InputError if the file holds fewer.
+template <class Use>
+void for_each_block(ByteSource& source, std::uint64_t n, std::size_t record_bytes, Use&& use) {
+  while (n > 0) {
+    const auto window = source.peek(record_bytes);
+    if (window.size() < record_bytes) require_records(source, n, record_bytes);
+    const std::size_t count = std::min<std::uint64_t>(n, window.size() / record_bytes);
+    use(window.data(), count);
+    source.advance(count * record_bytes);
+    n -= count;
+  }
+}
 
 }  // namespace cmap

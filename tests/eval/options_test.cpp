@@ -65,6 +65,8 @@ const Setting kSettings[] = {
     {"sensitivity-translation", "0.05", "0.05"},
     {"sensitivity-rotation", "0.5", "0.5"},
     {"index", "flann", R"("flann")"},
+    {"keep-noise", "true", "true"},
+    {"classes", "2,6", "[2, 6]"},
 };
 
 TEST(Options, EveryOneIsTested) { EXPECT_EQ(evaluation_option_specs().size(), std::size(kSettings)); }

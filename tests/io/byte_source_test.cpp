@@ -58,6 +58,25 @@ TEST(ByteSource, YieldsEveryByteOnceAcrossBlocks) {
   EXPECT_EQ(source.remaining(), 0U);
 }
 
+TEST(ByteSource, ReadsAnywhereWithoutMoving) {
+  const TempFolder folder;
+  const auto path = folder.write("a", "0123456789");
+  const std::string text = "0123456789";
+  ByteSource file(path, true), memory("a", bytes_of(text), true);
+  for (ByteSource* source : {&file, &memory}) {
+    source->skip(4, "four bytes");
+    std::array<std::byte, 3> out{};
+    EXPECT_EQ(source->read_at(2, out), 3U);
+    EXPECT_EQ(text_of(out), "234");
+    EXPECT_EQ(source->read_at(8, out), 2U) << "the end";
+    EXPECT_EQ(text_of(out).substr(0, 2), "89");
+    EXPECT_EQ(source->read_at(10, out), 0U);
+    EXPECT_EQ(source->read_at(~std::uint64_t{0}, out), 0U);
+    EXPECT_EQ(text_of(source->peek(1)), "456789");
+  }
+  EXPECT_EQ(file.finish_sha256(), memory.finish_sha256());
+}
+
 TEST(ByteSource, HashesTheWholeFileHoweverMuchWasRead) {
   // FIPS 180-2, example B.1.
   constexpr std::string_view kAbc = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";

@@ -4,9 +4,9 @@
 namespace cmap::testing {
 namespace {
 
-constexpr std::pair<const char*, fuzz::Reader> kReaders[] = {{"ply", read_ply},       {"pcd", read_pcd},
-                                                             {"las", read_las},       {"npy", read_npy_cloud},
-                                                             {"npz", read_npz_cloud}, {"text", read_text}};
+constexpr std::pair<const char*, fuzz::Reader> kReaders[] = {
+    {"ply", read_ply},       {"pcd", read_pcd},       {"las", fuzz::read_las_as_it_is},
+    {"npy", read_npy_cloud}, {"npz", read_npz_cloud}, {"text", read_text}};
 
 /// Every input that the fuzzers start from or once found, through every reader, with every compiler.
 std::size_t replay(const std::filesystem::path& folder) {

@@ -1,54 +1,14 @@
 #include <limits>
 
-#include "io/io_testing.hpp"
+#include "io/las_testing.hpp"
 
 namespace cmap::testing {
 namespace {
 
 using ::testing::HasSubstr;
 
-constexpr std::array<U16, 11> kRecordBytes{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
-constexpr std::array<std::size_t, 11> kRgbOffset{0, 0, 20, 28, 0, 28, 0, 30, 30, 0, 30};
-
-/// A LAS file with these points; every record has `extra` bytes of its own at the end.
-struct Las {
-  U8 minor = 2;
-  U8 format = 3;
-  U16 extra = 0;
-  std::uint32_t gap = 0;  ///< bytes between header and points
-  std::array<double, 3> scale{0.01, 0.01, 0.001};
-  std::array<double, 3> offset{500000, 4000000, 0};
-  std::vector<std::array<std::int32_t, 3>> points{{1, 2, 3}};
-  std::vector<Rgb16> colors{{256, 512, 65535}};
-
-  std::size_t header_bytes() const { return minor == 4 ? 375 : minor == 3 ? 235 : 227; }
-  std::size_t record_bytes() const { return std::size_t{kRecordBytes[format]} + extra; }
-
-  Bytes header() const {
-    Bytes bytes(std::string(header_bytes(), '\0'));
-    const auto n = static_cast<std::uint32_t>(points.size());
-    bytes.set(0, std::array{'L', 'A', 'S', 'F'}).set(24, U8{1}).set(25, minor);
-    bytes.set(94, static_cast<U16>(header_bytes())).set(96, static_cast<std::uint32_t>(header_bytes()) + gap);
-    bytes.set(104, format).set(105, static_cast<U16>(record_bytes()));
-    bytes.set(131, scale).set(155, offset);
-    if (minor < 4 || format < 6) bytes.set(107, n);
-    if (minor == 4) bytes.set(247, std::uint64_t{n});
-    return bytes.text(std::string(gap, '#'));
-  }
-  Bytes file() const {
-    Bytes bytes = header();
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      Bytes record(std::string(record_bytes(), '\x5a'));
-      record.set(0, points[i]);
-      if (kRgbOffset[format] > 0) record.set(kRgbOffset[format], colors[i]);
-      bytes.text(record.str());
-    }
-    return bytes;
-  }
-};
-
 TEST(LasReader, EveryVersionAndPointFormat) {
-  for (U8 minor = 0; minor <= 4; ++minor) {
+  for (U8 minor = 0; minor <= 5; ++minor) {
     for (U8 format = 0; format <= 10; ++format) {
       const Las las{.minor = minor, .format = format, .extra = static_cast<U16>(format % 3), .gap = 60};
       const auto file = read_content("a.las", las.file().str());
@@ -114,7 +74,7 @@ TEST(LasReader, BadHeaders) {
       {las.file().str().substr(0, 226), "truncated: the LAS header"},
       {Las{.minor = 4}.file().str().substr(0, 300), "truncated: the LAS 1.4 header"},
       {las.file().set(24, U8{2}).str(), "LAS version 2.2"},
-      {las.file().set(25, U8{5}).str(), "LAS version 1.5"},
+      {las.file().set(25, U8{6}).str(), "LAS version 1.6; 1.0 to 1.5 expected"},
       {las.file().set(104, U8{11}).str(), "point format 11"},
       {las.file().set(105, U16{33}).str(), "records of 33 bytes, but point format 3 takes 34"},
       {las.file().set(131, 0.0).str(), "x scale factor 0"},
@@ -124,12 +84,64 @@ TEST(LasReader, BadHeaders) {
       {las.file().set(96, 4000000000U).str(), "truncated: all that comes before the points"},
       {las.file().set(107, 2U).str(), "truncated: 2 points of 34 bytes from byte 227 on do not fit into 261 bytes"},
       {las.file().set(107, 4294967295U).str(), "truncated: 4294967295 points"},
-      {las.file().set(107, 0U).str(), "holds no points"},
+      {las.file().set(107, 0U).str().substr(0, 227), "holds no points"},
       {Las{.minor = 4}.file().set(247, ~std::uint64_t{0}).str(), "truncated: 18446744073709551615 points"},
       {las.file().set(155, 1e300).str(), "none of its 1 points is finite; 1 left out: no return"},
       {las.file().set(131, 1e308).set(155, 1e308).str(), "none of its 1 points is finite"},
   };
   for (const auto& [content, message] : kCases) EXPECT_THAT(refusal("bad.las", content), HasSubstr(message));
+}
+
+TEST(LasReader, ACountOfZeroBeforePointsIsAnUnfinishedFile) {
+  Las las{.points = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}};
+  EXPECT_THAT(refusal("a.las", las.file().set(107, 0U).str()),
+              HasSubstr("the header counts 0 points, but 102 bytes follow, room for 3 points: the file was not finished"));
+  las = {.minor = 4, .format = 7};
+  EXPECT_THAT(refusal("a.las", las.file().set(247, std::uint64_t{0}).str()), HasSubstr("room for 1 points"));
+  las.points.clear();
+  las.extended_records = {{"other", 1, std::string(100, '#')}};
+  EXPECT_THAT(refusal("a.las", las.file().str()), HasSubstr("holds no points")) << "records are no points";
+}
+
+TEST(LasReader, PointsBeyondTheCountAreSaid) {
+  const Las las{.points = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}};
+  const auto file = read_content("a.las", las.file().set(107, 2U).str());
+  EXPECT_EQ(file.info.points, 2U);
+  EXPECT_THAT(all_warnings(file), HasSubstr("bytes_left: 34 bytes behind the points are not read, room for 1 more "
+                                            "points than the header's 2"));
+}
+
+TEST(LasReader, BytesLeftOverAreSaid) {
+  const Las las{.points = {{1, 2, 3}, {4, 5, 6}}};
+  EXPECT_THAT(all_warnings(read_content("a.las", las.file().text("abc").str())),
+              HasSubstr("bytes_left: 3 bytes behind the points are not read"));
+  EXPECT_THAT(all_warnings(read_content("a.las", las.file().str())), "");
+}
+
+TEST(LasReader, RecordsLongerThanTheHeaderSaysAreRefused) {
+  const Las las{.extra = 2, .points = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}};
+  EXPECT_THAT(all_warnings(read_content("a.las", las.file().str())), "") << "extra bytes that the header knows of";
+  EXPECT_THAT(refusal("a.las", las.file().set(105, U16{34}).str()),
+              HasSubstr("6 bytes are left behind the points, 2 a point: a record seems to be longer than the header's 34"));
+}
+
+TEST(LasReader, TwoCountsThatDisagree) {
+  const Las las{.minor = 4, .points = {{1, 2, 3}, {4, 5, 6}}};
+  EXPECT_THAT(all_warnings(read_content("a.las", las.file().set(107, 5U).str())),
+              HasSubstr("two_counts: the header counts 2 points in its 64-bit field, 5 in its old 32-bit field"));
+  const auto old = read_content("a.las", las.file().set(247, std::uint64_t{0}).str());
+  EXPECT_EQ(old.info.points, 2U) << "the old field alone counts";
+  EXPECT_THAT(all_warnings(old), "");
+}
+
+TEST(LasReader, WaveformsBehindThePointsOfLas13) {
+  Las las{.minor = 3, .format = 4};
+  const std::string waveforms = LasRecord{"LASF_Spec", 65535, std::string(500, '\x7f')}.bytes(true);
+  const auto place = std::uint64_t{las.data_offset() + las.record_bytes()};
+  las.global_encoding = 2;
+  EXPECT_THAT(all_warnings(read_content("a.las", las.file().set(227, place).text(waveforms).str())), "");
+  las.global_encoding = 0;
+  EXPECT_THAT(all_warnings(read_content("a.las", las.file().text(waveforms).str())), HasSubstr("bytes_left: 560"));
 }
 
 TEST(LasReader, TruncatedAnywhereIsRefused) {

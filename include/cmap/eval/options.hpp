@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cmap/core/point_cloud.hpp"
+#include "cmap/io/point_cloud_file.hpp"
 #include "cmap/spatial/nearest.hpp"
 #include "cmap/spatial/visibility.hpp"
 
@@ -51,7 +52,12 @@ struct EvaluationOptions {
   double sensitivity_translation_m = 0.01;
   double sensitivity_rotation_deg = 0.1;
   IndexKind index = IndexKind::kBvh;
+  bool keep_noise = false;             ///< LAS: of classes 7 and 18
+  std::vector<std::uint8_t> classes;   ///< LAS: these only; empty: all
 };
+
+/// What of it decides how files are read.
+ReadOptions read_options(const EvaluationOptions& options, bool sha256 = false);
 
 /// The threshold of Tanks and Temples: as given, else the largest of the thresholds.
 double tanks_and_temples_tau_m(const EvaluationOptions& options);

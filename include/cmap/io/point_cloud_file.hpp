@@ -16,6 +16,8 @@ namespace cmap {
 struct ReadOptions {
   /// Also compute the SHA-256 of the whole file, from the same blocks that are parsed.
   bool sha256 = false;
+  bool keep_noise = false;                 ///< LAS: points of the noise classes 7 and 18 too
+  std::vector<std::uint8_t> classes = {};  ///< LAS: points of these classes only; empty: of all
 };
 
 /// Finite points that a reader does not hand on, and why.
