@@ -86,7 +86,7 @@ NpyPoints points_of_columns(const std::string& name, std::span<const NamedColumn
                             FileInfo& info) {
   const std::vector<NamedColumn> scalars = expanded(columns);
   const std::vector<Field> fields = fields_of(scalars);
-  const ByteSource source(name, std::span<const std::byte>());
+  const ByteSource source(name, std::span(columns[0].column.data, 1));  // stands for the array in messages
   const PointSchema schema = find_point_schema(source, fields, info);
   check_coordinates(name, scalars, schema, info);
   NpyPoints points;

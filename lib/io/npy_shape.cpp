@@ -114,7 +114,8 @@ std::optional<PointTable> find_point_table(const Shape& shape) {
   const bool flat = shape.size() == 2;
   if (columns == 3) return PointTable{rows, 3, false};
   if (flat && may_be_columns(rows) && columns > kMostColumns) return PointTable{columns, rows, true};
-  const bool ambiguous = flat && rows == 3;  // three points, or three rows of coordinates
+  // Three points or three rows of coordinates; planes of coordinates.
+  const bool ambiguous = flat ? rows == 3 : shape[shape.size() - 3] == 3;
   if (may_be_columns(columns) && !ambiguous) return PointTable{rows, columns, false};
   return std::nullopt;
 }

@@ -22,6 +22,13 @@ std::optional<ScalarType> number_type(char kind, std::size_t bytes) {
   return scalar_from_pcd(pcd_kind, bytes);
 }
 
+/// Long doubles, complex numbers, text, raw bytes, dates.
+bool is_other(char kind, std::size_t bytes) {
+  if (kind == 'f') return bytes == 12 || bytes == 16;
+  if (kind == 'c') return bytes == 8 || bytes == 16 || bytes == 24 || bytes == 32;
+  return bytes > 0 && std::string_view("SaUVMm").find(kind) != std::string_view::npos;
+}
+
 /// A type such as "<f4", "|S10" or "<M8[ns]".
 NpyField parse_type(const NpyHeaderText& text, std::string_view name) {
   if (name.find('O') != std::string_view::npos) {
@@ -42,7 +49,7 @@ NpyField parse_type(const NpyHeaderText& text, std::string_view name) {
     field.kind = NpyKind::kHalf;
   } else if (const auto type = number_type(kind, bytes); type && (kind == 'f' || kind == 'i' || kind == 'u')) {
     field.scalar = *type;
-  } else if (std::string_view("fcSaUVMm").find(kind) != std::string_view::npos && bytes > 0) {
+  } else if (is_other(kind, bytes)) {
     field.kind = NpyKind::kOther;
   } else {
     text.refuse("values of type '{}'; {} can be read", field.type.substr(0, 40), kReadable);

@@ -25,7 +25,8 @@ constexpr std::string_view kMaskNames[] = {"mask", "valid", "validmask", "masks"
 // Arrays of three numbers a row that are no points.
 constexpr std::string_view kOtherNames[] = {"normals", "normal",   "faces",    "triangles", "cells",    "tris",
                                             "mesh",    "rays",     "flow",     "bbox",      "extrinsic", "extrinsics",
-                                            "poses",   "intrinsic", "intrinsics", "camerapositions", "arr1"};
+                                            "poses",   "intrinsic", "intrinsics", "camerapositions", "arr1",
+                                            "depth",   "depths",   "depthconf", "conf"};
 
 template <std::size_t n>
 bool is_one_of(std::string_view name, const std::string_view (&names)[n]) {
@@ -175,7 +176,7 @@ PointArrays choose_point_arrays(const ByteSource& source, const Entries& entries
   if (named != nullptr) return {{named->name}, false};  // whoever reads it says what is wrong with it
   std::vector<std::string> candidates = arrays_with_point_shape(entries);
   if (candidates.size() == 1) return {std::move(candidates), true};
-  const bool only_one = entries.size() == 1 && entries[0].header;
+  const bool only_one = entries.size() == 1 && entries[0].header && find(entries, "depth") == nullptr;
   if (only_one) return {{entries[0].name}, true};
   refuse(source, entries, candidates);
 }

@@ -7,7 +7,6 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -33,7 +32,7 @@ std::string rows_with(const std::vector<std::vector<double>>& more) {
 TEST(NpyCloud, PointsOfEveryTypeAndShape) {
   const auto file = read("'<f4'", "(12, 3)", point_bytes<float>(12));
   EXPECT_EQ(file.info.format, "NPY <f4");
-  EXPECT_THAT(file.info.notes, IsEmpty());
+  EXPECT_EQ(all_notes(file), "");
   expect_samples(file, 12, false);
   expect_samples(read("'<f8'", "(3, 4, 3)", point_bytes<double>(12)), 12, false);
   expect_samples(read("'<f4'", "(1, 2, 2, 3, 3)", point_bytes<float>(12)), 12, false);

@@ -195,8 +195,8 @@ TEST(NpzCloud, ColorsOfAnotherCountAreRefused) {
   EXPECT_THAT(refused({{"xyz", six}, {"rgb", npy_text("'|u1'", "(3, 7)", std::string(21, 'a'))}}),
               HasSubstr("rgb has the shape (3, 7)"));
   // Height and width exchanged.
-  EXPECT_THAT(refused({{"world_points", points("(1, 2, 3, 3)", 6)}, {"images", colors("(1, 3, 2, 3)", 6)}}),
-              HasSubstr("images has the shape (1, 3, 2, 3), but world_points holds 6 points (shape (1, 2, 3))"));
+  EXPECT_THAT(refused({{"world_points", points("(1, 2, 5, 3)", 10)}, {"images", colors("(1, 5, 2, 3)", 10)}}),
+              HasSubstr("images has the shape (1, 5, 2, 3), but world_points holds 10 points (shape (1, 2, 5))"));
   // Pictures beside a list of points need not be theirs; numbers that are no colors are said.
   const auto pictures = read({{"points", six}, {"images", colors("(1, 5, 3)", 5)}});
   EXPECT_THAT(all_notes(pictures), HasSubstr("arrays not used: images"));
