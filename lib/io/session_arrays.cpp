@@ -23,16 +23,13 @@ Shape pixel_shape(const SessionPredictions& session, std::size_t frame_count) {
   return {frame_count, static_cast<std::uint64_t>(session.height), static_cast<std::uint64_t>(session.width)};
 }
 
-void drop_last_one(Shape& shape, std::size_t dimensions) {
-  if (shape.size() == dimensions + 1 && shape.back() == 1) shape.pop_back();
-}
-
-/// Reads (S,H,W) values; VGGT's own keep a 1 at the end of the shape.
-NpyArray read_pixels(const ArrayStore& store, std::string_view name) {
+NpyArray read_of(const ArrayStore& store, std::string_view name, std::size_t dimensions) {
   NpyArray array = store.read(name);
-  drop_last_one(array.header.shape, 3);
+  drop_ones(array, dimensions);
   return array;
 }
+
+NpyArray read_pixels(const ArrayStore& store, std::string_view name) { return read_of(store, name, 3); }
 
 /// Marks what is no measurement with 0 in both arrays and says how many; throws InputError if nothing is left.
 void mark_invalid_depth(const std::string& name, SessionPredictions& session) {
@@ -125,6 +122,27 @@ std::uint8_t to_byte(const NpyArray& images, float value) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0F, 1.0F) * 255.0F));
 }
 
+/// (S,H,W,3) or (S,3,H,W), bytes or floats in [0,1].
+Array<Rgb8> to_colors(const NpyArray& images, std::uint64_t frames, std::uint64_t height, std::uint64_t width) {
+  const bool planes = images.shape() == Shape{frames, 3, height, width};
+  if (!planes && images.shape() != Shape{frames, height, width, 3}) {
+    images.fail("has the shape {}; {} or {} expected", shape_text(images.shape()),
+                shape_text({frames, height, width, 3}), shape_text({frames, 3, height, width}));
+  }
+  const bool bytes = images.header.fields[0].type == "|u1";
+  const Array<std::uint8_t> byte_values = bytes ? images.to_bytes() : Array<std::uint8_t>();
+  const Array<float> float_values = bytes ? Array<float>() : images.to_floats();
+  const std::size_t pixels = height * width;
+  Array<Rgb8> colors(frames * pixels);
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t place = planes ? (3 * (i / pixels) + k) * pixels + i % pixels : 3 * i + k;
+      colors[i][k] = bytes ? byte_values[place] : to_byte(images, float_values[place]);
+    }
+  }
+  return colors;
+}
+
 }  // namespace
 
 void read_depth(const ArrayStore& store, SessionPredictions& session, std::size_t& frame_count) {
@@ -145,33 +163,13 @@ void read_depth(const ArrayStore& store, SessionPredictions& session, std::size_
   note_low_confidence(confidence.name, session.depth_confidence, session);
 }
 
-Array<Rgb8> to_colors(const NpyArray& images, std::uint64_t frames, std::uint64_t height, std::uint64_t width) {
-  const bool planes = images.shape() == Shape{frames, 3, height, width};
-  if (!planes && images.shape() != Shape{frames, height, width, 3}) {
-    images.fail("has the shape {}; {} or {} expected", shape_text(images.shape()),
-                shape_text({frames, height, width, 3}), shape_text({frames, 3, height, width}));
-  }
-  const bool bytes = images.header.type == NpyType::kUint8;
-  const Array<std::uint8_t> byte_values = bytes ? images.to_bytes() : Array<std::uint8_t>();
-  const Array<float> float_values = bytes ? Array<float>() : images.to_floats();
-  const std::size_t pixels = height * width;
-  Array<Rgb8> colors(frames * pixels);
-  for (std::size_t i = 0; i < colors.size(); ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t place = planes ? (3 * (i / pixels) + k) * pixels + i % pixels : 3 * i + k;
-      colors[i][k] = bytes ? byte_values[place] : to_byte(images, float_values[place]);
-    }
-  }
-  return colors;
-}
-
 void read_images(const ArrayStore& store, SessionPredictions& session, std::size_t frame_count) {
-  session.images = to_colors(store.read("images"), frame_count, static_cast<std::uint64_t>(session.height),
+  session.images = to_colors(read_of(store, "images", 4), frame_count, static_cast<std::uint64_t>(session.height),
                              static_cast<std::uint64_t>(session.width));
 }
 
 void read_cameras(const ArrayStore& store, SessionPredictions& session, std::size_t frame_count) {
-  const NpyArray extrinsic = store.read("extrinsic"), intrinsic = store.read("intrinsic");
+  const NpyArray extrinsic = read_of(store, "extrinsic", 3), intrinsic = read_of(store, "intrinsic", 3);
   require_shape(extrinsic, {frame_count, 3, 4});
   require_shape(intrinsic, {frame_count, 3, 3});
   const Array<double> poses = extrinsic.to_doubles(), matrices = intrinsic.to_doubles();
@@ -184,7 +182,7 @@ void read_cameras(const ArrayStore& store, SessionPredictions& session, std::siz
 
 void read_world_points(const ArrayStore& store, SessionPredictions& session, std::size_t frame_count) {
   if (!store.has("world_points") && !store.has("world_points_conf")) return;
-  const NpyArray points = store.read("world_points"), confidence = read_pixels(store, "world_points_conf");
+  const NpyArray points = read_of(store, "world_points", 4), confidence = read_pixels(store, "world_points_conf");
   Shape shape = pixel_shape(session, frame_count);
   require_shape(confidence, shape);
   shape.push_back(3);

@@ -25,7 +25,7 @@ void check_sizes(const SessionPredictions& session) {
   if (!session.world_points.empty()) is(session.world_points.size(), pixels);
 }
 
-void write_array(const std::filesystem::path& path, NpyType type, const Shape& shape, const void* data) {
+void write_array(const std::filesystem::path& path, ScalarType type, const Shape& shape, const void* data) {
   OutputFile file(path);
   write_npy(file, type, shape, data);
   file.commit();
@@ -39,8 +39,8 @@ void write_cameras(const SessionPredictions& session, const std::filesystem::pat
       for (int column = 0; column < 3; ++column) matrices.push_back(session.intrinsics[i](row, column));
     }
   }
-  write_array(folder / "extrinsic.npy", NpyType::kFloat64, {session.frame_count(), 3, 4}, poses.data());
-  write_array(folder / "intrinsic.npy", NpyType::kFloat64, {session.frame_count(), 3, 3}, matrices.data());
+  write_array(folder / "extrinsic.npy", ScalarType::kFloat64, {session.frame_count(), 3, 4}, poses.data());
+  write_array(folder / "intrinsic.npy", ScalarType::kFloat64, {session.frame_count(), 3, 3}, matrices.data());
 }
 
 void write_frames(const SessionPredictions& session, const std::filesystem::path& path) {
@@ -77,12 +77,12 @@ void write_session_predictions(const SessionPredictions& session, const std::fil
   Shape triples = pixels;
   triples.push_back(3);
   write_frames(session, partial / "frames.csv");
-  write_array(partial / "images.npy", NpyType::kUint8, triples, session.images.data());
-  write_array(partial / "depth.npy", NpyType::kFloat32, pixels, session.depth.data());
-  write_array(partial / "depth_conf.npy", NpyType::kFloat32, pixels, session.depth_confidence.data());
+  write_array(partial / "images.npy", ScalarType::kUint8, triples, session.images.data());
+  write_array(partial / "depth.npy", ScalarType::kFloat32, pixels, session.depth.data());
+  write_array(partial / "depth_conf.npy", ScalarType::kFloat32, pixels, session.depth_confidence.data());
   if (!session.world_points.empty()) {
-    write_array(partial / "world_points.npy", NpyType::kFloat32, triples, session.world_points.data());
-    write_array(partial / "world_points_conf.npy", NpyType::kFloat32, pixels, session.world_points_confidence.data());
+    write_array(partial / "world_points.npy", ScalarType::kFloat32, triples, session.world_points.data());
+    write_array(partial / "world_points_conf.npy", ScalarType::kFloat32, pixels, session.world_points_confidence.data());
   }
   write_cameras(session, partial);
   write_meta(session, partial / "meta.json");

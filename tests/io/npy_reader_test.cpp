@@ -26,6 +26,88 @@ TEST(NpyArray, EveryTypeAndVersion) {
   EXPECT_EQ(read_array(npy_text("'|b1'", "(2,)", std::string("\0\1", 2))).to_bytes(), (Array<U8>{0, 1}));
   EXPECT_EQ(read_array(npy_text("'<i4'", "(1,)", raw<std::int32_t>({-7}))).to_doubles(), Array<double>{-7});
   EXPECT_EQ(read_array(npy_text("'<i8'", "(1,)", raw<std::int64_t>({1LL << 40}))).to_doubles(), Array<double>{0x1p40});
+  EXPECT_EQ(read_array(npy_text("'|i1'", "(2,)", "\xff\x05")).to_doubles(), (Array<double>{-1, 5}));
+  EXPECT_EQ(read_array(npy_text("'<i2'", "(1,)", raw<std::int16_t>({-300}))).to_doubles(), Array<double>{-300});
+  EXPECT_EQ(read_array(npy_text("'<u2'", "(1,)", raw<U16>({65535}))).to_doubles(), Array<double>{65535});
+  EXPECT_EQ(read_array(npy_text("'<u4'", "(1,)", raw<std::uint32_t>({0xffffffff}))).to_doubles(),
+            Array<double>{4294967295.0});
+  EXPECT_EQ(read_array(npy_text("'<u8'", "(1,)", raw<std::uint64_t>({1ULL << 63}))).to_doubles(), Array<double>{0x1p63});
+}
+
+/// The bytes of each value as they stand in a file, most significant first.
+TEST(NpyArray, BigEndian) {
+  EXPECT_EQ(read_array(npy_text("'>f4'", "(2,)", {"\x3f\xc0\0\0\xc0\0\0\0", 8})).to_floats(), (Array<float>{1.5F, -2}));
+  EXPECT_EQ(read_array(npy_text("'>f2'", "(2,)", "\x3e\x01\xfc\x01")).to_floats().at(0), 1.5009765625F);
+  EXPECT_EQ(read_array(npy_text("'>f8'", "(1,)", {"\x40\x09\x21\xfb\x54\x44\x2d\x18", 8})).to_doubles(),
+            Array<double>{3.141592653589793});
+  EXPECT_EQ(read_array(npy_text("'>i2'", "(2,)", {"\x01\x02\xff\xfe", 4})).to_doubles(), (Array<double>{258, -2}));
+  EXPECT_EQ(read_array(npy_text("'>u4'", "(1,)", {"\x01\x02\x03\x04", 4})).to_doubles(), Array<double>{16909060});
+  EXPECT_EQ(read_array(npy_text("'>i8'", "(1,)", {"\xff\xff\xff\xff\xff\xff\xff\xfb", 8})).to_doubles(),
+            Array<double>{-5});
+}
+
+/// In Fortran's order the first index is the fastest in the file: value (i, j, k) of shape (2, 3, 4) is the one at
+/// i + 2 j + 6 k.
+TEST(NpyArray, FortranOrder) {
+  std::vector<float> stored(24);
+  for (std::size_t i = 0; i < 24; ++i) stored[i] = static_cast<float>(i);
+  const Array<float> values = read_array(npy_text("'<f4'", "(2, 3, 4)", raw(stored), "True")).to_floats();
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(values[12 * i + 4 * j + k], static_cast<float>(i + 2 * j + 6 * k));
+    }
+  }
+  EXPECT_EQ(read_array(npy_text("'>i2'", "(2, 2)", {"\0\1\0\2\0\3\0\4", 8}, "True")).to_doubles(),
+            (Array<double>{1, 3, 2, 4}));
+  EXPECT_EQ(read_array(npy_text("'<f4'", "(3, 0)", "", "True")).size(), 0U);
+  EXPECT_THAT(input_error([&] { read_array(npy_text("'<f4'", "(2, 3, 4)", raw(stored).substr(1), "True")); }),
+              HasSubstr("truncated"));
+}
+
+NpyHeader header_of(std::string_view descr) {
+  const std::string content = npy_text(descr, "(0,)", "");
+  ByteSource source("a.npy", std::as_bytes(std::span(std::string_view(content))));
+  return read_npy_header(source);
+}
+
+TEST(NpyArray, RecordsAsNumpyDescribesThem) {
+  const NpyHeader aligned = header_of("[('x', '<f4'), ('id', '|u1'), ('', '|V3'), (('a title', 'rgb'), '>u2', (3,))]");
+  ASSERT_EQ(aligned.fields.size(), 4U);
+  EXPECT_EQ(aligned.item_bytes, 4U + 1 + 3 + 6);
+  EXPECT_EQ(aligned.fields[2].name, "");
+  EXPECT_EQ(aligned.fields[3].name, "rgb");
+  EXPECT_EQ(aligned.fields[3].offset, 8U);
+  EXPECT_EQ(aligned.fields[3].count, 3U);
+  EXPECT_TRUE(aligned.fields[3].big_endian);
+  const NpyHeader nested = header_of("[('p', [('x', '<f4'), ('y', '<f4')]), ('n', [('x', '<f8')]), ('t', '<M8[ns]'), "
+                                     "('s', '<U5'), ('many', [('a', '|u1'), ('b', '<i2')], (2, 3))]");
+  EXPECT_EQ(nested.type_text(), "records of p.x, y, n.x, t, s, many");
+  EXPECT_EQ(nested.item_bytes, 4U + 4 + 8 + 8 + 20 + 18);
+  EXPECT_EQ(nested.fields[5].kind, NpyKind::kOther);
+}
+
+TEST(NpyArray, RecordsThatAreRefused) {
+  const auto refusal_of = [](std::string_view descr) { return input_error([&] { header_of(descr); }); };
+  EXPECT_THAT(refusal_of("[]"), HasSubstr("records without members"));
+  EXPECT_THAT(refusal_of("[('x', '<f4'"), HasSubstr("malformed"));
+  EXPECT_THAT(refusal_of("[('x' '<f4')]"), HasSubstr("malformed"));
+  EXPECT_THAT(refusal_of("[('x', '|O')]"), HasSubstr("pickled Python objects"));
+  EXPECT_THAT(refusal_of("[('x', '<f3')]"), HasSubstr("values of type '<f3'"));
+  EXPECT_THAT(refusal_of("[('x', '<f4x')]"), HasSubstr("values of type '<f4x'"));
+  EXPECT_THAT(refusal_of("[('x', '|V0')]"), HasSubstr("values of type '|V0'"));
+  EXPECT_THAT(refusal_of("[('x', '|V99999999999999999999')]"), HasSubstr("values of type"));
+  EXPECT_THAT(refusal_of("[('x', '<f4', (0,))]"), HasSubstr("absurd shape"));
+  EXPECT_THAT(refusal_of("[('x', '<f4', (65536, 65536))]"), HasSubstr("absurd shape"));
+  EXPECT_THAT(refusal_of("[('a', '|V60000'), ('b', '|V6000')]"), HasSubstr("more than the accepted 65536 bytes"));
+  std::string deep;
+  for (int i = 0; i < 1000; ++i) deep += "[('a', ";
+  EXPECT_THAT(refusal_of(deep), HasSubstr("more than 8 deep"));
+  // As plain numbers only what is one can be had.
+  EXPECT_THAT(input_error([] { read_array(npy_text("[('x', '<f4')]", "(1,)", "1234")).to_floats(); }),
+              HasSubstr("records of x; plain numbers expected"));
+  EXPECT_THAT(input_error([] { read_array(npy_text("'<c8'", "(1,)", "12345678")).to_doubles(); }),
+              HasSubstr("<c8; plain numbers expected"));
+  EXPECT_THAT(input_error([] { read_array(npy_text("'<f4'", "(4611686018427387904, 4)", "")); }), HasSubstr("absurd"));
 }
 
 TEST(NpyArray, ShapesAsPythonWritesThem) {
@@ -58,7 +140,7 @@ TEST(NpyArray, WrittenAsNumpyDoes) {
   const TempFolder folder;
   const float values[] = {1, 2, 3, 4, 5, 6};
   OutputFile file(folder / "a.npy");
-  write_npy(file, NpyType::kFloat32, {2, 3}, values);
+  write_npy(file, ScalarType::kFloat32, {2, 3}, values);
   file.commit();
   const std::string bytes = read_bytes(folder / "a.npy");
   EXPECT_EQ(bytes, npy_text("'<f4'", "(2, 3)", raw<float>({1, 2, 3, 4, 5, 6})));
@@ -134,47 +216,6 @@ TEST(ZipArchive, SaysWhatIsWrong) {
   const ZipArchive zip("a.zip", std::as_bytes(std::span(bomb)));
   EXPECT_THAT(input_error([&] { zip.read(zip.members()[0]); }), HasSubstr("cannot hold its 21"));
   EXPECT_THAT(input_error([] { ZipArchive("no/such.npz"); }), HasSubstr("no/such.npz: no such file"));
-}
-
-TEST(NpyCloud, ArraysOfPoints) {
-  const auto file = read_content("a.npy", npy_text("'<f4'", "(2, 3)", raw<float>({1, 2, 3, 4, 5, 6})));
-  EXPECT_EQ(file.info.format, "NPY <f4");
-  EXPECT_EQ(file.cloud.positions, (Array<Eigen::Vector3f>{{1, 2, 3}, {4, 5, 6}}));
-  EXPECT_FALSE(file.cloud.has_color());
-  // UTM coordinates keep their millimeters; what is not finite is dropped.
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  const auto utm =
-      read_content("a.npy", npy_text("'<f8'", "(1, 2, 3)", raw<double>({636000.001, 849000.002, 3, nan, 5, 6})));
-  ASSERT_EQ(utm.cloud.size(), 1U);
-  EXPECT_LT((point(utm, 0) - Eigen::Vector3d(636000.001, 849000.002, 3)).norm(), 1e-5);
-  EXPECT_EQ(utm.info.points, 2U);
-  EXPECT_THAT(refusal("a.npy", npy_text("'<f4'", "(3, 2)", raw<float>({1, 2, 3, 4, 5, 6}))),
-              HasSubstr("(N, 3) expected"));
-  EXPECT_THAT(refusal("a.npy", npy_text("'|u1'", "(2, 3)", "123456")), HasSubstr("values of type |u1"));
-  EXPECT_THAT(refusal("a.npy", npy_text("'<f4'", "(0, 3)", "")), HasSubstr("holds no points"));
-}
-
-TEST(NpyCloud, NpzOfPointsMapsAndPredictions) {
-  const std::string points = npy_text("'<f4'", "(2, 3)", raw<float>({1, 2, 3, 4, 5, 6}));
-  const auto cloud_of = [&](ZipText text) { return read_content("a.npz", text.str()); };
-  EXPECT_EQ(cloud_of({true, false, {{"arr_0.npy", points}}}).cloud.size(), 2U);
-  EXPECT_EQ(cloud_of({true, true, {{"points.npy", points}, {"more.npy", points}}}).cloud.size(), 2U);
-  const auto map =
-      cloud_of({true, false, {{"pointcloud.npy", points}, {"mask.npy", npy_text("'|b1'", "(2,)", {"\0\1", 2})}}});
-  EXPECT_EQ(map.cloud.positions, (Array<Eigen::Vector3f>{{4, 5, 6}}));
-  EXPECT_THAT(all_notes(map), HasSubstr("1 of 2 points left out by the mask"));
-  const auto session =
-      cloud_of({false,
-                false,
-                {{"world_points.npy", npy_text("'<f4'", "(1, 1, 2, 3)", raw<float>({1, 2, 3, 4, 5, 6}))},
-                 {"images.npy", npy_text("'<f4'", "(1, 3, 1, 2)", raw<float>({0, 1, 0.2F, 0, 0, 0.6F}))}}});
-  EXPECT_EQ(session.info.format, "NPZ VGGT predictions");
-  EXPECT_EQ(std::get<Array<Rgb8>>(session.cloud.colors), (Array<Rgb8>{{0, 51, 0}, {255, 0, 153}}));
-  EXPECT_THAT(refusal("a.npz", (ZipText{false, false, {{"depth.npy", points}}}.str())),
-              HasSubstr("a session for cmap_recon"));
-  EXPECT_THAT(refusal("a.zip", (ZipText{false, false, {{"a.txt", "x"}, {"b.txt", "y"}}}.str())),
-              HasSubstr("it holds a.txt, b.txt"));
-  EXPECT_THAT(refusal("a.npz", "PK\x03\x04...."), HasSubstr("truncated, or no ZIP file"));
 }
 
 }  // namespace

@@ -37,6 +37,20 @@ TEST(SessionPredictions, ReadsAHandMadeFolder) {
   EXPECT_TRUE(session.warnings.empty());
 }
 
+/// As the network returns them, before anybody squeezed the batch; and in the other byte order.
+TEST(SessionPredictions, ReadsABatchOfOne) {
+  SessionText text;
+  text["images.npy"] = npy_text("'|u1'", "(1, 2, 2, 3, 3)", SessionText::image_bytes());
+  text["depth_conf.npy"] = npy_text("'<f4'", "(1, 2, 2, 3)", raw(SessionText::confidence()));
+  text["extrinsic.npy"] = npy_text("'<f8'", "(1, 2, 3, 4)", raw(SessionText::poses()));
+  text["intrinsic.npy"] = npy_text("'<f8'", "(1, 2, 3, 3)", raw(SessionText::matrices()));
+  const auto depth = SessionText::depth();
+  Bytes big_endian({}, true);
+  for (const float value : depth) big_endian.put(value);
+  text["depth.npy"] = npy_text("'>f4'", "(1, 2, 2, 3, 1)", big_endian.str());
+  expect_hand_made_session(text.read());
+}
+
 /// VGGT's own: float planes, a trailing 1, pickled members, no meta.json; stored, deflated, and with 64-bit sizes.
 TEST(SessionPredictions, ReadsPredictionsNpz) {
   SessionText text;
@@ -182,11 +196,10 @@ std::vector<Broken> broken_arrays() {
   const std::string depth = raw(SessionText::depth());
   const std::string confidence = raw(SessionText::confidence());
   return {
-      {"depth.npy", npy_text("'<f4'", "(2, 2, 3)", depth, "True"), "Fortran order"},
-      {"depth.npy", npy_text("'>f4'", "(2, 2, 3)", depth), "big-endian ('>f4')"},
+      {"depth.npy", npy_text("'<f4'", "(2, 1, 2, 3)", depth), "has the shape (2, 1, 2, 3): a batch of 2"},
       {"depth.npy", npy_text("'|O'", "(2, 2, 3)", depth), "pickled Python objects"},
-      {"depth.npy", npy_text("'<c8'", "(2, 2, 3)", depth), "values of type '<c8'"},
-      {"depth.npy", npy_text("[('x', '<f4')]", "(2, 2, 3)", depth), "an array of records"},
+      {"depth.npy", npy_text("'<c8'", "(2, 2, 3)", depth + depth), "holds <c8; plain numbers expected"},
+      {"depth.npy", npy_text("[('x', '<f4')]", "(2, 2, 3)", depth), "holds records of x; plain numbers"},
       {"depth.npy", npy_text("'<f4'", "(2, 2, 3)", depth, "False", 4), "NPY version 4.0"},
       {"depth.npy", npy_text("'<f4'", "(2, 2, 3)", depth.substr(4)), "truncated: an array of shape (2, 2, 3)"},
       {"depth.npy", npy_text("'<f4'", "(2, 2, 3)", depth + "x"), "1 bytes follow"},
