@@ -16,26 +16,7 @@ std::uint64_t FileInfo::n_left_out() const {
 PointCloudFile read_point_cloud(ByteSource& source) {
   PointCloudFile file;
   file.info.path = source.name();
-  switch (detect_format(source)) {
-    case FileFormat::kPly:
-      file.cloud = read_ply(source, file.info);
-      break;
-    case FileFormat::kPcd:
-      file.cloud = read_pcd(source, file.info);
-      break;
-    case FileFormat::kLas:
-      file.cloud = read_las(source, file.info);
-      break;
-    case FileFormat::kNpy:
-      file.cloud = read_npy_cloud(source, file.info);
-      break;
-    case FileFormat::kNpz:
-      file.cloud = read_npz_cloud(source, file.info);
-      break;
-    case FileFormat::kText:
-      file.cloud = read_text(source, file.info);
-      break;
-  }
+  file.cloud = detect_format(source).read(source, file.info);
   file.info.sha256 = source.finish_sha256();
   return file;
 }

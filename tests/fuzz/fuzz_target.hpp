@@ -8,12 +8,16 @@
 
 #include "cmap/core/error.hpp"
 #include "io/capture_json.hpp"
+#include "io/file_format.hpp"
 #include "io/format_readers.hpp"
 #include "io/session_arrays.hpp"
 
 namespace cmap::fuzz {
 
 using Reader = PointCloud (*)(ByteSource&, FileInfo&);
+
+/// Whatever the content says it is.
+inline PointCloud read_any(ByteSource& source, FileInfo& info) { return detect_format(source).read(source, info); }
 
 /// One input for one reader, which must read it or refuse it. The small blocks of a source in memory make the input
 /// cross their borders.
