@@ -151,6 +151,7 @@ Answer zip(const FileStart& start) {
   if (member.ends_with("data.pkl")) return "is a PyTorch file; write its array with numpy.save";
   if (member == "[Content_Types].xml") return "is an Office document; save its table as CSV";
   if (start.extension == ".npz" || member.ends_with(".npy")) return std::nullopt;
+  if (auto known = foreign_extension(start)) return known;
   return "is a ZIP archive (its first member is '" + std::string(member.substr(0, 60)) + "'); unpack it first";
 }
 

@@ -210,8 +210,8 @@ bool is_ptx(const FileStart& start) {
     return rows.size() > i && rows[i].size() == 1 && parse_number(rows[i][0], count);
   };
   if (!is_count(0)) return false;
-  if (rows.size() == 1) return start.extension == ".ptx";
-  return is_count(1) && (rows.size() == 2 || rows[2].size() == 3);
+  if (start.extension == ".ptx") return rows.size() == 1 || is_count(1);
+  return is_count(1) && rows.size() > 2 && rows[2].size() == 3;
 }
 
 PointCloud read_ptx(ByteSource& source, FileInfo& info) {

@@ -97,8 +97,7 @@ TEST(KittiBin, RefusesOtherBytes) {
 TEST(KittiBin, EveryCutIsReadInWholePointsOrRefused) {
   const std::string good = raw(scan(40), 4);
   for (std::size_t n = 1; n < good.size(); ++n) {
-    const std::string message = refusal("a.bin", good.substr(0, n));
-    if (message.empty()) EXPECT_EQ(n % 16, 0U) << n;
+    EXPECT_TRUE(n % 16 == 0 || !refusal("a.bin", good.substr(0, n)).empty()) << n;
   }
 }
 
