@@ -1,93 +1,71 @@
 #include "io/file_format.hpp"
 
 #include <algorithm>
-#include <cctype>
 
-#include "io/line_reader.hpp"
+#include "io/foreign_formats.hpp"
+#include "io/format_readers.hpp"
 
 namespace cmap {
 namespace {
 
-using namespace std::string_view_literals;
+constexpr std::string_view kReadable =
+    "PLY, PCD, LAS, NPY, NPZ, PTS, PTX, KITTI .bin, COLMAP points3D, OBJ without faces and text (x y z [r g b]) can be "
+    "read";
 
-constexpr std::string_view kReadable = "PLY, PCD, LAS, NPY, NPZ and text (x y z [r g b]) can be read";
-
-struct Foreign {
-  std::string_view magic;
-  std::string_view message;
-};
-
-constexpr Foreign kForeign[] = {
-    {"ASTM-E57"sv, "is an E57 file (pdal translate in.e57 out.ply converts it)"},
-    {"\x1f\x8b"sv, "is compressed with gzip; decompress it first"},
-    {"\x28\xb5\x2f\xfd"sv, "is compressed with zstd; decompress it first"},
-    {"\xfd"
-     "7zXZ"sv,
-     "is compressed with xz; decompress it first"},
-    {"BZh"sv, "is compressed with bzip2; decompress it first"},
-    {"#ROSBAG"sv, "is a ROS bag"},
-    {"\x89HDF"sv, "is an HDF5 file"},
-    {"\x89PNG"sv, "is a PNG image"},
-    {"\xff\xd8\xff"sv, "is a JPEG image"},
-    {"glTF"sv, "is a binary glTF model"},
-    {"\x7f"
-     "ELF"sv,
-     "is a program"},
-    {"version https://git-lfs"sv, "is a Git LFS pointer, not the file itself (git lfs pull fetches it)"},
-    {"<!DOCTYPE"sv, "is a web page; the download probably failed"},
-    {"<html"sv, "is a web page; the download probably failed"},
-    {"{"sv, "looks like JSON"},
-};
-
-std::string extension_of(const std::string& name) {
-  std::string extension = std::filesystem::path(name).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return extension;
-}
-
-bool is_text(std::string_view start) {
-  return std::none_of(start.begin(), start.end(), [](char c) {
-    const auto byte = static_cast<unsigned char>(c);
-    return byte < 0x20 && c != '\n' && c != '\r' && c != '\t' && c != '\v' && c != '\f';
-  });
-}
+bool is_ply(const FileStart& start) { return start.bytes.starts_with("ply\n") || start.bytes.starts_with("ply\r"); }
+bool is_las(const FileStart& start) { return start.bytes.starts_with("LASF"); }
+bool is_npy(const FileStart& start) { return start.bytes.starts_with("\x93NUMPY"); }
+bool is_npz(const FileStart& start) { return start.bytes.starts_with("PK\x03\x04"); }
 
 /// A PCD file may start with comments and with any of its keywords.
-bool looks_like_pcd(std::string_view start) {
-  while (!start.empty()) {
-    const std::string_view line = start.substr(0, start.find('\n'));
-    if (line.starts_with("# .PCD")) return true;
-    if (line.starts_with("VERSION ") || line.starts_with("FIELDS ")) return true;
-    if (!line.starts_with("#") && line.find_first_not_of(" \t\r") != std::string_view::npos) return false;
-    start.remove_prefix(std::min(start.size(), line.size() + 1));
+bool is_pcd(const FileStart& start) {
+  for (const std::string_view line : start.lines(100)) {
+    if (line.starts_with("# .PCD") || line.starts_with("VERSION ") || line.starts_with("FIELDS ")) return true;
+    if (!line.starts_with("#") && line.find_first_not_of(" \t") != std::string_view::npos) return false;
   }
   return false;
 }
 
+/// A reader that has no options.
+template <auto reader>
+PointCloud plain(ByteSource& source, FileInfo& info, const ReadOptions&) {
+  return reader(source, info);
+}
+
+constexpr CloudFormat kByContent[] = {
+    {"PLY", is_ply, plain<read_ply>},
+    {"LAS", is_las, read_las, /*has_classes=*/true},
+    {"NPY", is_npy, plain<read_npy_cloud>},
+    {"NPZ", is_npz, plain<read_npz_cloud>},
+    {"PCD", is_pcd, plain<read_pcd>},
+    {"PTX", is_ptx, plain<read_ptx>},
+    {"COLMAP text", is_colmap_text, plain<read_colmap_text>},
+    {"COLMAP binary", is_colmap_binary, plain<read_colmap_binary>},
+    {"OBJ", is_obj, plain<read_obj_points>},
+};
+
+constexpr CloudFormat kByExtension[] = {
+    {"PLY", [](const FileStart& start) { return start.extension == ".ply"; }, plain<read_ply>},
+    {"PCD", [](const FileStart& start) { return start.extension == ".pcd"; }, plain<read_pcd>},
+    {"text", [](const FileStart& start) { return start.text; }, plain<read_text>},
+    {"KITTI .bin", [](const FileStart& start) { return start.extension == ".bin"; }, plain<read_kitti_bin>},
+};
+
+template <std::size_t n>
+const CloudFormat* find(const CloudFormat (&formats)[n], const FileStart& start) {
+  const auto found = std::find_if(formats, formats + n, [&](const auto& format) { return format.recognizes(start); });
+  return found == formats + n ? nullptr : found;
+}
+
 }  // namespace
 
-FileFormat detect_format(ByteSource& source) {
-  const auto bytes = source.peek(std::min<std::uint64_t>(4096, source.size()));
-  const std::string_view start = without_byte_order_mark(
-      {reinterpret_cast<const char*>(bytes.data()), std::min<std::size_t>(4096, bytes.size())});
-  if (start.starts_with("ply\n") || start.starts_with("ply\r")) return FileFormat::kPly;
-  if (start.starts_with("LASF")) return FileFormat::kLas;
-  if (start.starts_with("\x93NUMPY")) return FileFormat::kNpy;
-  if (start.starts_with("PK\x03\x04")) return FileFormat::kNpz;
-  if (looks_like_pcd(start)) return FileFormat::kPcd;
-  for (const Foreign& foreign : kForeign) {
-    if (start.starts_with(foreign.magic)) source.fail("{}; {}", foreign.message, kReadable);
-  }
-  const std::string extension = extension_of(source.name());
-  if (extension == ".ply") return FileFormat::kPly;
-  if (extension == ".pcd") return FileFormat::kPcd;
-  if (extension == ".las" || extension == ".laz") source.fail("does not start with 'LASF', as a LAS file does");
-  if (extension == ".obj" || extension == ".stl" || extension == ".off") {
-    source.fail("is a mesh ({}), not a point cloud; {}", extension, kReadable);
-  }
-  if (!is_text(start)) source.fail("is of no known format; {}", kReadable);
-  return FileFormat::kText;
+const CloudFormat& detect_format(ByteSource& source) {
+  const FileStart start = file_start(source);
+  if (const auto what = foreign_content(start)) source.fail("{}; {}", *what, kReadable);
+  if (const CloudFormat* format = find(kByContent, start)) return *format;
+  if (const auto what = foreign_extension(start)) source.fail("{}; {}", *what, kReadable);
+  if (const CloudFormat* format = find(kByExtension, start)) return *format;
+  source.fail("is of no known format; {}", kReadable);
 }
 
 }  // namespace cmap

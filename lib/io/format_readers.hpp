@@ -2,6 +2,7 @@
 
 #include "cmap/io/point_cloud_file.hpp"
 #include "io/byte_source.hpp"
+#include "io/file_start.hpp"
 
 namespace cmap {
 
@@ -16,6 +17,23 @@ PointCloud read_text(ByteSource& source, FileInfo& info);
 PointCloud read_npy_cloud(ByteSource& source, FileInfo& info);
 /// VGGT's predictions with world_points, VGGT-SLAM's point maps, or one array of points. The file is held in memory.
 PointCloud read_npz_cloud(ByteSource& source, FileInfo& info);
+
+/// Leica's PTX: scans as grids, each with its scanner's place and a matrix that moves it into the world.
+bool is_ptx(const FileStart& start);
+PointCloud read_ptx(ByteSource& source, FileInfo& info);
+
+/// COLMAP's points3D.txt and points3D.bin: points with the pictures that saw them.
+bool is_colmap_text(const FileStart& start);
+PointCloud read_colmap_text(ByteSource& source, FileInfo& info);
+bool is_colmap_binary(const FileStart& start);
+PointCloud read_colmap_binary(ByteSource& source, FileInfo& info);
+
+/// Scans as float32 without a header: KITTI's x y z intensity, or nuScenes' x y z intensity ring, told apart by values.
+PointCloud read_kitti_bin(ByteSource& source, FileInfo& info);
+
+/// OBJ of vertices only; with faces it is a mesh, and refused.
+bool is_obj(const FileStart& start);
+PointCloud read_obj_points(ByteSource& source, FileInfo& info);
 
 /// What read_point_cloud() does, on a source that is already open.
 PointCloudFile read_point_cloud(ByteSource& source, const ReadOptions& options = {});

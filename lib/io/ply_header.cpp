@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "io/foreign_formats.hpp"
 #include "io/number_text.hpp"
 #include "io/point_names.hpp"
 
@@ -57,11 +58,7 @@ std::vector<std::string> property_names(const PlyElement& element) {
 }
 
 void refuse_splats(const ByteSource& source, const PlyElement& element) {
-  if (element.name == "chunk" || names_splats(property_names(element))) {
-    source.fail(
-        "holds Gaussian splats (property f_dc_*), not points with colors; export the splats' centers as a colored "
-        "point cloud first (red = 255 * (0.5 + 0.282095 * f_dc_0), and so on)");
-  }
+  if (element.name == "chunk" || names_splats(property_names(element))) source.fail("{}", splat_hint());
 }
 
 std::size_t find_vertex(const ByteSource& source, const std::vector<PlyElement>& elements) {

@@ -16,30 +16,11 @@ std::uint64_t FileInfo::n_left_out() const {
 PointCloudFile read_point_cloud(ByteSource& source, const ReadOptions& options) {
   PointCloudFile file;
   file.info.path = source.name();
-  const FileFormat format = detect_format(source);
-  if (!options.classes.empty() && format != FileFormat::kLas) {
+  const CloudFormat& format = detect_format(source);
+  if (!options.classes.empty() && !format.has_classes) {
     throw UnsupportedError(source.name() + ": classes were asked for, but only LAS files have them");
   }
-  switch (format) {
-    case FileFormat::kPly:
-      file.cloud = read_ply(source, file.info);
-      break;
-    case FileFormat::kPcd:
-      file.cloud = read_pcd(source, file.info);
-      break;
-    case FileFormat::kLas:
-      file.cloud = read_las(source, file.info, options);
-      break;
-    case FileFormat::kNpy:
-      file.cloud = read_npy_cloud(source, file.info);
-      break;
-    case FileFormat::kNpz:
-      file.cloud = read_npz_cloud(source, file.info);
-      break;
-    case FileFormat::kText:
-      file.cloud = read_text(source, file.info);
-      break;
-  }
+  file.cloud = format.read(source, file.info, options);
   file.info.sha256 = source.finish_sha256();
   return file;
 }

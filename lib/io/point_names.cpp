@@ -140,7 +140,10 @@ PointNames find_point_names(std::span<const std::string> names) {
 }
 
 bool names_splats(std::span<const std::string> names) {
-  return std::any_of(names.begin(), names.end(), [](const auto& name) { return plain_name(name) == "fdc0"; });
+  return std::any_of(names.begin(), names.end(), [](const auto& name) {
+    const std::string plain = plain_name(name);
+    return plain == "fdc0" || plain == "packedposition";
+  });
 }
 
 bool names_degrees(std::span<const std::string> names) {

@@ -26,7 +26,7 @@ PointNames find_point_names(std::span<const std::string> names);
 /// The name without quotes and comment marks, in lower case, letters and digits alone: "X [m]" is "xm".
 std::string plain_name(std::string_view name);
 
-/// Whether these names are those of Gaussian splats (f_dc_0 ...), whose colors are coefficients.
+/// Whether these names are those of Gaussian splats: f_dc_0 ..., whose colors are coefficients, or packed.
 bool names_splats(std::span<const std::string> names);
 
 /// Whether they give places as longitude and latitude.

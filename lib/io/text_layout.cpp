@@ -4,6 +4,8 @@
 #include <cctype>
 #include <filesystem>
 
+#include "io/foreign_formats.hpp"
+#include "io/not_a_cloud.hpp"
 #include "io/point_schema.hpp"
 
 namespace cmap {
@@ -32,10 +34,31 @@ std::optional<Names> commented_names(const TextStart& start, std::size_t n_colum
   return std::nullopt;
 }
 
-[[noreturn]] void fail_without_position(const ByteSource& source, const TextLine& header, const Names& names) {
-  if (names_splats(names)) {
-    source.fail("line {}: holds Gaussian splats (f_dc_*), not points with colors", header.number);
+/// Refuses names and numbers that are something else than points.
+void refuse_other_content(const ByteSource& source, const TextStart& start, const NumberTable& table) {
+  constexpr std::size_t kJudged = 64;
+  if (start.header) {
+    const Names names = names_of(start.header->text, start.format, table.columns);
+    if (names_splats(names)) source.fail("line {}: {}", start.header->number, splat_hint());
+    if (names_poses(names)) source.fail("line {}: {}", start.header->number, pose_hint());
+    return;
   }
+  if (start.count) return;
+  std::vector<std::vector<double>> rows;
+  std::vector<std::string_view> columns;
+  for (const TextLine& line : start.rows) {
+    if (rows.size() == kJudged) break;
+    split_row(line.text, start.format.separator, columns);
+    std::vector<double>& row = rows.emplace_back(columns.size());
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      if (!parse_column(columns[i], start.format, row[i])) return;
+    }
+  }
+  const bool complete = start.whole && rows.size() == start.rows.size();
+  if (const auto what = not_a_cloud(rows, complete)) source.fail("{}", *what);
+}
+
+[[noreturn]] void fail_without_position(const ByteSource& source, const TextLine& header, const Names& names) {
   if (names_degrees(names)) {
     source.fail("line {}: the points are given as longitude and latitude; project them to meters first", header.number);
   }
@@ -72,6 +95,7 @@ bool is_pts(const ByteSource& source) {
 TextLayout text_layout(const ByteSource& source, const TextStart& start, FileInfo& info) {
   const NumberTable table = number_table(start);
   const std::uint64_t first_row = start.rows.front().number;
+  refuse_other_content(source, start, table);
   TextLayout layout;
   layout.columns = table.columns;
   if (start.header) {

@@ -47,6 +47,36 @@ TEST_F(RealData, LidarPcdWithForeignFields) {
   EXPECT_EQ(ascii.cloud.positions[0], Eigen::Vector3f(21.647913F, 0.19822195F, -1.8524752F));
 }
 
+// PDAL's test files. The counts are those of the lines; the places were computed by hand from header and line.
+TEST_F(RealData, PtxScans) {
+  const auto colored = read("formats_text/1.2-with-color.ptx");
+  EXPECT_EQ(colored.info.points, 1065U);
+  EXPECT_EQ(colored.info.finite_points, 1065U);
+  EXPECT_TRUE(colored.info.warnings.empty());
+  EXPECT_LT((colored.cloud.world(0) - Eigen::Vector3d(637012.24, 849028.31, 431.66)).norm(), 1e-3);
+  EXPECT_EQ(std::get<Array<Rgb8>>(colored.cloud.colors)[0], (Rgb8{68, 77, 88}));
+
+  const auto one = read("formats_text/complex-transform.ptx");
+  EXPECT_EQ(one.info.points, 12U);
+  EXPECT_EQ(one.info.finite_points, 4U);
+  // x = 0.999979 * -0.00563 + 0.003613 * 0.645218 + 0.005359 * -0.440506 - 3.028748, and so on down the columns
+  EXPECT_LT((one.cloud.world(0) - Eigen::Vector3d(-3.034407381, -3.173781036, -1.823750042)).norm(), 1e-5);
+  EXPECT_EQ(one.info.sensor_positions, std::vector{Eigen::Vector3d(-3.028748, -3.819741, -1.384333)});
+
+  const auto two = read("formats_text/multiple-and-transform.ptx");
+  EXPECT_EQ(two.info.finite_points, 8U);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_LT((two.cloud.world(i) - two.cloud.world(i + 4)).norm(), 1e-3);
+}
+
+TEST_F(RealData, AnObjWithFacesIsNamed) {
+  try {
+    read("formats_text/1.2-with-color.obj");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("is a mesh"));
+  }
+}
+
 TEST_F(RealData, CloudComparePlyAndTransform) {
   EXPECT_EQ(read("small_gicp/data/source.ply").info.points, 69792U);
   EXPECT_EQ(read("small_gicp/data/target.ply").info.points, 69088U);
