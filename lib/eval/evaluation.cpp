@@ -83,7 +83,9 @@ void check_plausibility(const Findings& f, const CoordinateSteps& steps, std::ve
   const bool by_threshold = std::ranges::any_of(metric_catalog(), [&](const MetricInfo& metric) {
     return metric.per_threshold && f.selection.contains(metric.id);
   });
-  if (by_threshold) warn_about_spacing(spacing, f.estimate_to_reference, f.options, warnings);
+  if (by_threshold) {
+    warn_about_spacing(spacing, f.pair.nearest_in_reference, f.estimate_to_reference, f.options, warnings);
+  }
 }
 
 void append(std::vector<MetricRecord>& all, std::vector<MetricRecord> some) {

@@ -23,7 +23,7 @@ std::string guess(const char* larger, double factor) {
   const double alike = factor < 10.0 ? 0.05 : 0.15;  // 3 is no foot
   for (const Unit& unit : kUnits) {
     if (std::abs(factor / unit.per_meter - 1.0) > alike) continue;
-    return fmt::format("is the {} in {} (coordinates are taken as meters)?", larger, unit.name);
+    return fmt::format("is the {} in {} (the unit here is the meter)?", larger, unit.name);
   }
   return "is one in other units, in a scale of its own as networks give, or only a part of the other?";
 }
@@ -35,10 +35,10 @@ void warn_about_sizes(const CloudBody& reference, const CloudBody& estimate, std
   if (larger_m < different * smaller_m || larger_m == 0.0) return;
   std::string factor, why = "do all points of one stand at one place?";
   if (smaller_m > 0.0) {
-    factor = fmt::format(", a factor of {:.3g}", larger_m / smaller_m);
+    factor = fmt::format(", a factor of {:.4g}", larger_m / smaller_m);
     why = guess(reference_m > estimate_m ? "reference" : "estimate", larger_m / smaller_m);
   }
-  warnings.push_back({"units_or_frame_mismatch", fmt::format("the reference spans {:.4g} m and the estimate {:.4g} m{}: {}",
+  warnings.push_back({"units_or_frame_mismatch", fmt::format("the reference spans {:.6g} m and the estimate {:.6g} m{}: {}",
                                                              reference_m, estimate_m, factor, why)});
 }
 

@@ -42,9 +42,10 @@ void warn_about_points(std::string_view which, const PointBlocks& points, const 
                        const std::optional<CoordinateStep>& step, const EvaluationOptions& options,
                        std::vector<Warning>& warnings);
 
-/// Thresholds below the reference's spacing that most of the estimate misses, as a perfect one may: a place anywhere on
-/// the surface is about as far from the reference's points as these are from one another.
-void warn_about_spacing(const SampledSpacing& reference, const DistanceStats& estimate_to_reference,
-                        const EvaluationOptions& options, std::vector<Warning>& warnings);
+/// Thresholds below the reference's spacing that most of the estimate misses, where its distances are such as that
+/// spacing alone would make them: not those of other errors, nor of an estimate with the reference's own points.
+void warn_about_spacing(const SampledSpacing& reference, const NearestField& nearest_in_reference,
+                        const DistanceStats& estimate_to_reference, const EvaluationOptions& options,
+                        std::vector<Warning>& warnings);
 
 }  // namespace cmap

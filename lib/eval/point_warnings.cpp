@@ -13,8 +13,15 @@
 namespace cmap {
 namespace {
 
+constexpr std::size_t kSample = 2000;
 constexpr double kManyRepeated = 0.01;
 constexpr std::size_t kFewest = 20;  // points from which on shares and medians say something
+
+double upper_median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
 
 /// Distance to the nearest point at another place, 0 where none is among the neighbors.
 double nearest_elsewhere_m(const PointBlocks& points, std::size_t slot, std::span<const std::uint32_t> neighbors) {
@@ -48,10 +55,10 @@ std::uint64_t n_repeated(const PointBlocks& points) {
   return points.size - static_cast<std::uint64_t>(std::ranges::unique(keys).begin() - keys.begin());
 }
 
-/// The steps of a raster are where its points are.
+/// The steps of a raster are where its points are: none is nearer to the next one, and none shares its place.
 bool is_raster(const CoordinateStep& step, const SampledSpacing& spacing) {
-  return step.cause == CoordinateStep::Cause::kDigits && spacing.spacing_m < 1.5 * step.step_m &&
-         spacing.repeated_share < kManyRepeated;
+  return step.cause == CoordinateStep::Cause::kDigits && spacing.spacing_m > 0.99 * step.step_m &&
+         spacing.spacing_m < 1.5 * step.step_m && spacing.repeated_share < kManyRepeated;
 }
 
 Warning step_warning(std::string_view which, const CoordinateStep& step, const EvaluationOptions& options) {
@@ -67,7 +74,7 @@ Warning step_warning(std::string_view which, const CoordinateStep& step, const E
                           step.cause == CoordinateStep::Cause::kFloat16 ? "float32" : "double precision")};
     case CoordinateStep::Cause::kDigits:
       return {"coarse_coordinates",
-              fmt::format("{}, as if rounded to few digits ({:.10g}), {}: store it with more digits", steps,
+              fmt::format("{}, as if rounded to few digits ({:.7g}), {}: store it with more digits", steps,
                           step.coordinate, needed)};
     case CoordinateStep::Cause::kOwnOffsets:
       break;
@@ -85,7 +92,7 @@ double finest_step_needed_m(const EvaluationOptions& options) {
 }
 
 SampledSpacing sampled_spacing(const Bvh& index) {
-  constexpr std::size_t kSample = 2000, kNeighbors = 8;
+  constexpr std::size_t kNeighbors = 8;
   Array<std::uint32_t> slots;
   for (const std::size_t slot : sampled_indices(index.points.size, kSample)) {
     slots.push_back(static_cast<std::uint32_t>(slot));
@@ -102,9 +109,7 @@ SampledSpacing sampled_spacing(const Bvh& index) {
   SampledSpacing spacing{std::numeric_limits<double>::quiet_NaN(),
                        static_cast<double>(repeated) / static_cast<double>(slots.size())};
   if (distances_m.size() < kFewest) return spacing;
-  const auto middle = distances_m.begin() + static_cast<std::ptrdiff_t>(distances_m.size() / 2);
-  std::nth_element(distances_m.begin(), middle, distances_m.end());
-  spacing.spacing_m = *middle;
+  spacing.spacing_m = upper_median(std::move(distances_m));
   return spacing;
 }
 
@@ -123,8 +128,17 @@ void warn_about_points(std::string_view which, const PointBlocks& points, const 
                    n, which, points.size, 100.0 * static_cast<double>(n) / static_cast<double>(points.size))});
 }
 
-void warn_about_spacing(const SampledSpacing& reference, const DistanceStats& estimate_to_reference,
-                        const EvaluationOptions& options, std::vector<Warning>& warnings) {
+void warn_about_spacing(const SampledSpacing& reference, const NearestField& nearest_in_reference,
+                        const DistanceStats& estimate_to_reference, const EvaluationOptions& options,
+                        std::vector<Warning>& warnings) {
+  // A place anywhere on the surface is 0.4 (grid) to 1.0 (random points) spacings from the next point of the reference.
+  constexpr double kOnItsPoints = 0.3, kElsewhere = 2.0;
+  std::vector<double> sq_dist;
+  for (const std::size_t slot : sampled_indices(nearest_in_reference.sq_dist.size(), kSample)) {
+    sq_dist.push_back(nearest_in_reference.sq_dist[slot]);
+  }
+  const double spacings = std::sqrt(upper_median(std::move(sq_dist))) / reference.spacing_m;
+  if (!(spacings > kOnItsPoints && spacings < kElsewhere)) return;
   std::vector<double> missed_m;
   for (std::size_t t = 0; t < options.thresholds_m.size(); ++t) {
     const bool below = options.thresholds_m[t] < reference.spacing_m;
@@ -133,8 +147,8 @@ void warn_about_spacing(const SampledSpacing& reference, const DistanceStats& es
   if (missed_m.empty()) return;
   warnings.push_back(
       {"sparse_reference",
-       fmt::format("the reference's points have a spacing of {:.3g} m, above the threshold{} {} m: most of the estimate is "
-                   "farther than that from any of them, which may say more about the reference than about the estimate",
+       fmt::format("the reference's points have a spacing of {:.3g} m, above the threshold{} {} m, which even an estimate "
+                   "that lies on the surface between them mostly misses: take larger ones, or a denser reference",
                    reference.spacing_m, missed_m.size() == 1 ? "" : "s", fmt::join(missed_m, ", "))});
 }
 

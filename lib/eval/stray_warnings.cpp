@@ -36,28 +36,48 @@ std::vector<std::size_t> farthest_slots(std::span<const double> sq_dist, std::si
   return farthest;
 }
 
+/// Sums of distances; points are added to those of the rest, not taken off the whole, of which nothing might be left
+/// but rounding.
+struct Sums {
+  double sq = 0.0;
+  double plain = 0.0;
+
+  Sums with(double sq_dist) const { return {sq + sq_dist, plain + std::sqrt(sq_dist)}; }
+  bool decided_by(const Sums& rest) const { return decides(1.0 - rest.sq / sq, 1.0 - rest.plain / plain); }
+};
+
+Sums sums_without(std::span<const double> sq_dist, const std::vector<std::size_t>& slots) {
+  Sums sums;
+  for (std::size_t slot = 0; slot < sq_dist.size(); ++slot) {
+    if (std::ranges::find(slots, slot) == slots.end()) sums = sums.with(sq_dist[slot]);
+  }
+  return sums;
+}
+
 /// The points that decide RMSE or the mean distance, and those that decide what is left without them. Where even the
 /// largest distance taken several times would not, the distances are not looked at.
 Strays deciding_strays(std::span<const double> sq_dist, const DistanceStats& stats) {
-  Strays strays;
   const std::size_t most = most_strays(sq_dist.size());
   const auto n = static_cast<double>(stats.n), n_most = static_cast<double>(most);
-  double sq_left = n * stats.mean_sq_m2, left = n * stats.mean_m;
-  if (most == 0 || !decides(n_most * stats.max_m * stats.max_m / sq_left, n_most * stats.max_m / left)) return strays;
-  std::vector<std::size_t> taken;
-  double sq_taken = 0.0, sum_taken = 0.0;  // since the last ones that decided
-  for (const std::size_t slot : farthest_slots(sq_dist, most)) {
-    taken.push_back(slot);
-    sq_taken += sq_dist[slot];
-    sum_taken += std::sqrt(sq_dist[slot]);
-    if (!decides(sq_taken / sq_left, sum_taken / left)) continue;
-    sq_left = std::max(0.0, sq_left - sq_taken);
-    left = std::max(0.0, left - sum_taken);
-    sq_taken = sum_taken = 0.0;
-    const double n_left = n - static_cast<double>(taken.size());
-    strays = {taken, std::sqrt(sq_left / n_left), left / n_left};
+  if (most == 0 || !decides(n_most * stats.max_m * stats.max_m / (n * stats.mean_sq_m2),
+                            n_most * stats.max_m / (n * stats.mean_m))) {
+    return {};
   }
-  return strays;
+  const std::vector<std::size_t> farthest = farthest_slots(sq_dist, most);
+  std::vector<Sums> without{sums_without(sq_dist, farthest)};  // the k farthest, k from most to 0
+  for (auto slot = farthest.rbegin(); slot != farthest.rend(); ++slot) {
+    without.push_back(without.back().with(sq_dist[*slot]));
+  }
+  std::ranges::reverse(without);
+  std::size_t n_strays = 0;
+  for (std::size_t k = 1; k <= most; ++k) {
+    if (without[n_strays].decided_by(without[k])) n_strays = k;
+  }
+  if (n_strays == 0) return {};
+  const double n_left = n - static_cast<double>(n_strays);
+  return {{farthest.begin(), farthest.begin() + static_cast<std::ptrdiff_t>(n_strays)},
+          std::sqrt(without[n_strays].sq / n_left),
+          without[n_strays].plain / n_left};
 }
 
 std::string described(const Strays& strays, const NearestPairs& pairs, const char* from, const char* to) {

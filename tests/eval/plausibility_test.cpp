@@ -199,6 +199,17 @@ TEST(Strays, ThePointThatDecidesRmseIsNamed) {
                              HasSubstr("without it RMSE is 0.125 m, not 600 m"))));
 }
 
+TEST(Strays, WhatIsLeftIsNoRounding) {
+  std::vector<Eigen::Vector3d> estimate;
+  for (int i = 0; i < 400; ++i) estimate.emplace_back(0.5 * (i % 20), 0.5 * (i / 20), 0.125);
+  std::vector<Eigen::Vector3d> reference = estimate;
+  for (Eigen::Vector3d& x : reference) x.z() = 0.0;
+  estimate[7].z() = 3e8;  // squared, 9e16: the sum of the others' squares is lost in it
+  const auto messages = said(warnings_of(reference, estimate), "stray_points");
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_THAT(messages[0], AllOf(HasSubstr("one stray point"), HasSubstr("without it RMSE is 0.125 m")));
+}
+
 TEST(Strays, OfTheReferenceDecideChamfer) {
   std::vector<Eigen::Vector3d> reference = grid(1.0);
   reference[7] = {0, 0, -500.0};
@@ -224,6 +235,19 @@ TEST(Strays, AnOutlierAmongOthersIsNone) {
   for (std::size_t i = 0; i < 10; ++i) estimate[10 * i].z() = 50.0 + static_cast<double>(i);
   EXPECT_THAT(said(warnings_of(grid(1.0), estimate), "stray_points"), ::testing::SizeIs(0));
   EXPECT_THAT(said(warnings_of({{0, 0, 0}, {1, 0, 0}}, {{0, 0, 0}, {1, 0, 100}}), "stray_points"), ::testing::SizeIs(0));
+}
+
+TEST(Steps, AreSaidUnlessTheyAreARasters) {
+  const auto messages = [](const std::vector<Eigen::Vector3d>& map) {
+    return said(warnings_of(map, map), "coarse_coordinates");
+  };
+  std::vector<Eigen::Vector3d> raster, rounded;
+  for (int i = 0; i < 400; ++i) {
+    raster.emplace_back(500000 + i % 20, 5400000 + i / 20, 300 + std::sin(i));
+    rounded.emplace_back(500000 + std::round(i % 20 * 2.5) / 10, 5400000 + i / 40, 300 + std::sin(i));
+  }
+  EXPECT_THAT(messages(raster), ::testing::SizeIs(0));
+  EXPECT_THAT(messages(rounded), Contains(HasSubstr("the estimate's y comes in steps of 1 m, as if rounded")));
 }
 
 TEST(Repeated, CopiesAreCounted) {
@@ -260,8 +284,13 @@ TEST(Spacing, ThresholdsBelowTheReferencesAreNamed) {
   EXPECT_THAT(said(warnings_of(grid(0.5), dense_plane(), options), "sparse_reference"), ::testing::SizeIs(0));
 }
 
-TEST(Spacing, IsNoMatterWhereTheEstimateIsNear) {
-  EXPECT_THAT(said(warnings_of(grid(0.5), grid(0.5), options_for({"fitness"})), "sparse_reference"), ::testing::SizeIs(0));
+TEST(Spacing, IsNoMatterOfOtherErrors) {
+  const auto messages = [](const std::vector<Eigen::Vector3d>& estimate) {
+    return said(warnings_of(grid(0.5), estimate, options_for({"fitness"})), "sparse_reference");
+  };
+  EXPECT_THAT(messages(grid(0.5)), ::testing::SizeIs(0));
+  EXPECT_THAT(messages(grid(0.5, 0.06)), ::testing::SizeIs(0)) << "the reference's own points, moved";
+  EXPECT_THAT(messages(grid(0.5, 5.0)), ::testing::SizeIs(0)) << "elsewhere";
 }
 
 TEST(Spacing, CopiesMakeAReferenceNoDenser) {

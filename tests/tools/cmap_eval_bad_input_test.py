@@ -43,6 +43,15 @@ class BadMaps(CmapEval):
         trajectories = ("--ref-trajectory", early, "--est-trajectory", late)
         self.refused(UNSUPPORTED, "time", near, near, "--align", "trajectory", *trajectories)
 
+    def test_one_point_too_far_to_count_voxels(self):
+        near = [(0.1 * (i % 20), 0.1 * (i // 20), 0) for i in range(400)]
+        reference = self.input("near.ply", ply(near))
+        for far in ((-7e8, 0, 0), (0, 9e8, 0), (6e8, 6e8, 6e8)):
+            stray = self.input("stray.ply", ply(near[:100] + [far] + near[100:]))
+            says = [f"{stray}: point 101 of 401, at (", "far to count voxels"]
+            self.refused(INPUT, says, reference, stray)
+            self.refused(INPUT, says, stray, reference)
+
     def test_missing(self):
         self.refused(INPUT, ["none.ply: no such file"], self.inputs / "none.ply", self.estimate)
         self.refused(INPUT, ["none.ply: no such file"], self.reference, self.inputs / "none.ply")
