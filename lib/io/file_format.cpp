@@ -9,8 +9,8 @@ namespace cmap {
 namespace {
 
 constexpr std::string_view kReadable =
-    "PLY, PCD, LAS, NPY, NPZ, PTS, PTX, KITTI .bin, COLMAP points3D, OBJ without faces and text (x y z [r g b]) can be "
-    "read";
+    "PLY, PCD, LAS, NPY, NPZ, PTS, PTX, KITTI .bin, COLMAP points3D, OpenSfM's "
+    "reconstruction.json, OBJ without faces and text (x y z [r g b]) can be read";
 
 bool is_ply(const FileStart& start) { return start.bytes.starts_with("ply\n") || start.bytes.starts_with("ply\r"); }
 bool is_las(const FileStart& start) { return start.bytes.starts_with("LASF"); }
@@ -36,6 +36,7 @@ constexpr CloudFormat kByContent[] = {
     {"COLMAP text", is_colmap_text, read_colmap_text},
     {"COLMAP binary", is_colmap_binary, read_colmap_binary},
     {"OBJ", is_obj, read_obj_points},
+    {"OpenSfM", is_opensfm, read_opensfm},
 };
 
 constexpr CloudFormat kByExtension[] = {
