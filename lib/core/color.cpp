@@ -60,7 +60,10 @@ RgbF rgb_255(const Colors& colors, std::size_t i) {
 }
 
 Rgb8 to_rgb8(const Eigen::Vector3f& rgb_255) {
-  const auto byte = [](float v) { return static_cast<std::uint8_t>(std::lround(std::clamp(v, 0.0f, 255.0f))); };
+  // fmax and fmin leave NaN out: it becomes 0.
+  const auto byte = [](float v) {
+    return static_cast<std::uint8_t>(std::lround(std::fmin(std::fmax(v, 0.0f), 255.0f)));
+  };
   return {byte(rgb_255.x()), byte(rgb_255.y()), byte(rgb_255.z())};
 }
 

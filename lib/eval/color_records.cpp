@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "cmap/core/error.hpp"
 #include "cmap/metrics/color_consistency.hpp"
 #include "cmap/metrics/color_distance.hpp"
 #include "eval/json_number.hpp"
@@ -21,7 +22,19 @@ Json max_distance_parameter(const EvaluationOptions& options) {
   return {{"max_distance_m", json_number(options.color_max_distance_m.value_or(INFINITY))}};
 }
 
-Json color_distance_fields(const EvaluationOptions& options, const ColorDistance& cd) {
+/// The points whose color is missing, where there are any: what the metric left out.
+void add_without_color(Json& fields, const MapPair& pair) {
+  if (pair.estimate.n_without_color + pair.reference.n_without_color == 0) return;
+  fields["n_without_color_estimate"] = pair.estimate.n_without_color;
+  fields["n_without_color_reference"] = pair.reference.n_without_color;
+}
+
+Json color_distance_fields(const EvaluationOptions& options, const MapPair& pair, const ColorDistance& cd,
+                           std::vector<Warning>& warnings) {
+  if (std::isnan(cd.value())) {
+    warnings.push_back({"color_distance_no_pairs", "no pair of nearest points counts in both directions (both need a "
+                                                   "color, within color-max-distance): no color distance"});
+  }
   Json fields{{"value", json_number(cd.value())},
               {"value_8bit", json_number(255.0 * cd.value())},
               {"parameters", max_distance_parameter(options)},
@@ -29,7 +42,8 @@ Json color_distance_fields(const EvaluationOptions& options, const ColorDistance
               {"reference_to_estimate", json_number(cd.reference_to_estimate.mean)},
               {"n_estimate", cd.estimate_to_reference.n},
               {"n_reference", cd.reference_to_estimate.n}};
-  if (options.color_max_distance_m) {
+  add_without_color(fields, pair);
+  if (options.color_max_distance_m || fields.contains("n_without_color_estimate")) {
     fields["n_unmatched_estimate"] = cd.estimate_to_reference.n_unmatched;
     fields["n_unmatched_reference"] = cd.reference_to_estimate.n_unmatched;
   }
@@ -45,40 +59,65 @@ Json fidelity_fields(const EvaluationOptions& options, const ColorDistance& cd, 
   return {{"value", json_number(cf)}, {"parameters", max_distance_parameter(options)}};
 }
 
-Json recall_fields(const EvaluationOptions& options, const LocalColorRecall& recall) {
-  Json fields{{"value", recall.value()},
-              {"coverage", recall.coverage()},
+Json recall_fields(const EvaluationOptions& options, const MapPair& pair, const LocalColorRecall& recall) {
+  Json fields{{"value", json_number(recall.value())},
+              {"coverage", json_number(recall.coverage())},
               {"conditional", json_number(recall.conditional())},
               {"parameters", {{"tau", options.lcr_tau}, {"radius_m", options.lcr_radius_m}}},
               {"n_reference", recall.n_reference},
               {"n_covered", recall.n_covered},
               {"n_recalled", recall.n_recalled}};
+  add_without_color(fields, pair);
   if (options.lcr_curve) {
     fields["curve"] = {{"tau", recall.curve.tau}, {"value", recall.curve.value}, {"area", recall.curve.area}};
   }
   return fields;
 }
 
-Json consistency_numbers(const ColorConsistency& c) {
-  return {{"value", json_number(c.mean)},
-          {"value_x100", json_number(100.0 * c.mean)},
-          {"median", json_number(c.median)},
-          {"n_voxels", c.n_voxels},
-          {"n_voxels_below_min", c.n_voxels_below_min}};
+Json consistency_numbers(const IndexedMap& map, const ColorConsistency& c, Singletons singletons) {
+  const double value = c.value(singletons);
+  Json numbers{{"value", json_number(value)},          {"value_x100", json_number(100.0 * value)},
+               {"zero", json_number(c.zero)},          {"exclude", json_number(c.exclude)},
+               {"median", json_number(c.median)},      {"n_voxels", c.n_voxels(singletons)},
+               {"n_occupied", c.n_occupied},           {"n_singletons", c.n_singletons}};
+  if (map.n_without_color > 0) numbers["n_without_color"] = map.n_without_color;
+  return numbers;
+}
+
+/// Copies of a point do not make a voxel any less a single one.
+void warn_of_singletons(const EvaluationOptions& o, const ColorConsistency& c, std::vector<Warning>& warnings) {
+  const std::uint64_t n_single = c.n_singletons + c.n_one_place;
+  if (2 * n_single <= c.n_occupied) return;
+  const char* counted = o.ccs_singletons == Singletons::kExclude ? "color consistency is of the rest alone"
+                                                                 : "they count as 0, which is perfect";
+  warnings.push_back(
+      {"color_consistency_sparse",
+       fmt::format("{} of the estimate's {} voxels of {} m hold a single point or copies of one: {}; a larger "
+                   "ccs-voxel says more of so sparse a map",
+                   n_single, c.n_occupied, o.ccs_voxel_m, counted)});
 }
 
 Json consistency_fields(const Findings& f, std::vector<Warning>& warnings) {
   const EvaluationOptions& o = f.options;
   const ColorConsistency estimate = color_consistency(f.pair.estimate, o.ccs_voxel_m, o.ccs_min_points);
   const ColorConsistency reference = color_consistency(f.pair.reference, o.ccs_voxel_m, o.ccs_min_points);
-  if (estimate.n_voxels == 0) {
+  if (o.ccs_singletons == Singletons::kRefuse && estimate.n_singletons > 0) {
+    throw UnsupportedError(fmt::format(
+        "ccs-singletons: {} of the estimate's {} voxels of {} m hold a single point; zero or exclude says what they "
+        "count as",
+        estimate.n_singletons, estimate.n_occupied, o.ccs_voxel_m));
+  }
+  if (estimate.n_voxels(o.ccs_singletons) == 0) {
     warnings.push_back({"color_consistency_no_voxels",
                         fmt::format("no {} m voxel of the estimate holds {} points: no color consistency",
                                     o.ccs_voxel_m, o.ccs_min_points)});
   }
-  Json fields = consistency_numbers(estimate);
-  fields["parameters"] = {{"voxel_m", o.ccs_voxel_m}, {"min_points", o.ccs_min_points}};
-  fields["reference"] = consistency_numbers(reference);
+  warn_of_singletons(o, estimate, warnings);
+  Json fields = consistency_numbers(f.pair.estimate, estimate, o.ccs_singletons);
+  fields["parameters"] = {{"voxel_m", o.ccs_voxel_m},
+                          {"singletons", singletons_name(o.ccs_singletons)},
+                          {"min_points", o.ccs_min_points}};
+  fields["reference"] = consistency_numbers(f.pair.reference, reference, o.ccs_singletons);
   return fields;
 }
 
@@ -89,10 +128,12 @@ Json delta_e_fields(const Findings& f) {
   };
   const DeltaEStats e = directed(f.pair.estimate_to_reference());
   const DeltaEStats r = directed(f.pair.reference_to_estimate());
-  return {{"value", json_number(0.5 * (e.mean + r.mean))},
-          {"parameters", {{"radius_m", f.options.lcr_radius_m}}},
-          {"estimate_to_reference", json(e)},
-          {"reference_to_estimate", json(r)}};
+  Json fields{{"value", json_number(0.5 * (e.mean + r.mean))},
+              {"parameters", {{"radius_m", f.options.lcr_radius_m}}},
+              {"estimate_to_reference", json(e)},
+              {"reference_to_estimate", json(r)}};
+  add_without_color(fields, f.pair);
+  return fields;
 }
 
 Json by_range_fields(const Findings& f) {
@@ -111,7 +152,9 @@ Json by_range_fields(const Findings& f) {
                     {"n_estimate", cd.estimate_to_reference.n},
                     {"n_reference", cd.reference_to_estimate.n}});
   }
-  return {{"per_range", bins}};
+  Json fields{{"per_range", bins}};
+  add_without_color(fields, f.pair);
+  return fields;
 }
 
 Json exposure_free_fields(const Findings& f) {
@@ -121,24 +164,28 @@ Json exposure_free_fields(const Findings& f) {
   const ColorDistance cd = color_distance(f.pair, pairs);
   Json parameters = max_distance_parameter(f.options);
   parameters["radius_m"] = f.options.lcr_radius_m;
-  return {{"value", json_number(cd.value())},
-          {"parameters", parameters},
-          {"gains", json_vector(gains.gain)},
-          {"n_pairs", gains.n_pairs},
-          {"estimate_to_reference", json_number(cd.estimate_to_reference.mean)},
-          {"reference_to_estimate", json_number(cd.reference_to_estimate.mean)}};
+  Json fields{{"value", json_number(cd.value())},
+              {"parameters", parameters},
+              {"gains", json_vector(gains.gain)},
+              {"n_pairs", gains.n_pairs},
+              {"estimate_to_reference", json_number(cd.estimate_to_reference.mean)},
+              {"reference_to_estimate", json_number(cd.reference_to_estimate.mean)}};
+  add_without_color(fields, f.pair);
+  return fields;
 }
 
 Json psnr_fields(const Findings& f) {
   const ColorPsnr psnr = color_psnr(f.pair);
   const Eigen::Vector3d db = psnr.psnr_db();
-  return {{"value", json_number(db.x())},
-          {"y", json_number(db.x())},
-          {"cb", json_number(db.y())},
-          {"cr", json_number(db.z())},
-          {"mse",
-           {{"estimate_to_reference", json_vector(psnr.mse_estimate_to_reference)},
-            {"reference_to_estimate", json_vector(psnr.mse_reference_to_estimate)}}}};
+  Json fields{{"value", json_number(db.x())},
+              {"y", json_number(db.x())},
+              {"cb", json_number(db.y())},
+              {"cr", json_number(db.z())},
+              {"mse",
+               {{"estimate_to_reference", json_vector(psnr.mse_estimate_to_reference)},
+                {"reference_to_estimate", json_vector(psnr.mse_reference_to_estimate)}}}};
+  add_without_color(fields, f.pair);
+  return fields;
 }
 
 }  // namespace
@@ -150,11 +197,12 @@ std::vector<MetricRecord> color_records(const Findings& f, std::optional<LocalCo
     cd = color_distance(f.pair, pairs_that_count(f.options));
   }
   RecordList records(f.selection);
-  records.add("color_distance", [&] { return color_distance_fields(f.options, *cd); });
+  records.add("color_distance", [&] { return color_distance_fields(f.options, f.pair, *cd, warnings); });
   records.add("color_fidelity", [&] { return fidelity_fields(f.options, *cd, warnings); });
   records.add("local_color_recall", [&] {
-    recall = local_color_recall(f.pair, {f.options.lcr_tau, f.options.lcr_radius_m, f.options.lcr_curve});
-    return recall_fields(f.options, *recall);
+    recall = local_color_recall(
+        f.pair, {.tau = f.options.lcr_tau, .radius_m = f.options.lcr_radius_m, .curve = f.options.lcr_curve});
+    return recall_fields(f.options, f.pair, *recall);
   });
   records.add("color_consistency", [&] { return consistency_fields(f, warnings); });
   records.add("delta_e", [&] { return delta_e_fields(f); });

@@ -33,6 +33,11 @@ class StageClock {
   const ProgressSink& progress_;
 };
 
+/// Colors that no point has are none.
+void drop_missing_colors(PointCloud& cloud) {
+  if (cloud.has_color() && count_without_color(cloud.colors) == cloud.size()) cloud.colors = {};
+}
+
 void check_color(const PointCloud& reference, const PointCloud& estimate, const MetricSelection& selection,
                  std::vector<Warning>& warnings) {
   if (reference.has_color() && estimate.has_color()) return;
@@ -67,11 +72,12 @@ MapPair index_and_pair(PointCloud& reference, PointCloud& estimate, IndexKind in
 void measure_distances(Findings& findings) {
   std::vector<double> thresholds = findings.options.thresholds_m;
   thresholds.push_back(findings.options.overlap_distance_m);
-  const auto stats = [&](const NearestField& nearest) {
-    return distance_stats(nearest.sq_dist, thresholds, findings.options.overlap_distance_m);
+  const auto stats = [&](const NearestPairs& pairs) {
+    return distance_stats(pairs.nearest.sq_dist, thresholds, findings.options.overlap_distance_m,
+                          {pairs.most_rounding_m(), [&](std::size_t slot) { return pairs.rounding_m(slot); }});
   };
-  parallel_tasks({[&] { findings.estimate_to_reference = stats(findings.pair.nearest_in_reference); },
-                  [&] { findings.reference_to_estimate = stats(findings.pair.nearest_in_estimate); }});
+  parallel_tasks({[&] { findings.estimate_to_reference = stats(findings.pair.estimate_to_reference()); },
+                  [&] { findings.reference_to_estimate = stats(findings.pair.reference_to_estimate()); }});
 }
 
 void check_plausibility(const Findings& f, const CoordinateSteps& steps, std::vector<Warning>& warnings) {
@@ -110,10 +116,13 @@ Evaluation evaluate(PointCloud reference, PointCloud estimate, const EvaluationO
   std::vector<std::pair<std::string, double>> stage_seconds;
   StageClock clock(stage_seconds, progress);
 
+  drop_missing_colors(reference);
+  drop_missing_colors(estimate);
   check_color(reference, estimate, selection, warnings);
   CoordinateSteps steps;
   clock.run("prepare", 0.15,
             [&] { steps = prepare_clouds(reference, estimate, options, selection, T_ref_est, warnings); });
+  const double reference_step_m = 0.0, estimate_step_m = 0.0;
   Evaluation result{
       .options = options, .T_ref_est = T_ref_est, .pair = index_and_pair(reference, estimate, options.index, clock)};
 
@@ -141,8 +150,11 @@ Evaluation evaluate(PointCloud reference, PointCloud estimate, const EvaluationO
   });
   clock.run("entropy", 0.9, [&] {
     if (selection.needs_neighborhoods) {
-      findings.neighborhoods = Neighborhoods{neighborhood_shapes(result.pair.reference.index, options.mme_radius_m),
-                                             neighborhood_shapes(result.pair.estimate.index, options.mme_radius_m)};
+      const auto shapes = [&](const IndexedMap& map, double file_step_m) {
+        return neighborhood_shapes(map.index, options.mme_radius_m, file_step_m);
+      };
+      findings.neighborhoods = Neighborhoods{shapes(result.pair.reference, reference_step_m),
+                                             shapes(result.pair.estimate, estimate_step_m)};
     }
     append(result.metrics, entropy_records(findings, warnings));
   });

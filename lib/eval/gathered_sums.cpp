@@ -57,9 +57,9 @@ void add_distances(MetricSums& sums, const Direction& d, const EvaluationOptions
     n.add(part, 1.0);
     distance.add(part, v);
     square.add(part, sq);
-    overlapping.add(part, v <= options.overlap_distance_m ? 1.0 : 0.0);
+    overlapping.add(part, d.pairs.is_within(slot, options.overlap_distance_m) ? 1.0 : 0.0);
     for (std::size_t t = 0; t < options.thresholds_m.size(); ++t) {
-      const bool within = v <= options.thresholds_m[t];
+      const bool within = d.pairs.is_within(slot, options.thresholds_m[t]);
       n_within[t].add(part, within ? 1.0 : 0.0);
       square_within[t].add(part, within ? sq : 0.0);
     }
@@ -72,7 +72,7 @@ void add_color_distances(MetricSums& sums, const Direction& d, const EvaluationO
   const double farthest_m = options.color_max_distance_m.value_or(INFINITY);
   const bool counts = name == "color_distance";
   for_each_slot(d, [&](std::size_t slot, std::uint32_t part) {
-    if (d.pairs.distance_m(slot) > farthest_m) return;
+    if (!d.pairs.is_within(slot, farthest_m) || !d.pairs.has_colors(slot)) return;
     distance.add(part, d.pairs.color_difference(slot, from_gain, to_gain).norm() / 255.0);
     if (counts) n.add(part, 1.0);
   });
@@ -81,15 +81,17 @@ void add_color_distances(MetricSums& sums, const Direction& d, const EvaluationO
 void add_delta_e(MetricSums& sums, const Direction& d, double radius_m) {
   Column n(sums, d.prefix + "delta_e_n"), sum(sums, d.prefix + "delta_e");
   for_each_slot(d, [&](std::size_t slot, std::uint32_t part) {
-    if (d.pairs.distance_m(slot) > radius_m) return;
+    if (!d.pairs.is_within(slot, radius_m) || !d.pairs.has_colors(slot)) return;
     sum.add(part, delta_e(d.pairs, slot));
     n.add(part, 1.0);
   });
 }
 
 void add_luma(MetricSums& sums, const Direction& d) {
-  Column square(sums, d.prefix + "sq_luma");
+  Column square(sums, d.prefix + "sq_luma"), n(sums, d.prefix + "luma_n");
   for_each_slot(d, [&](std::size_t slot, std::uint32_t part) {
+    if (!d.pairs.has_colors(slot)) return;
+    n.add(part, 1.0);
     const double y = rgb_to_ycbcr709((d.pairs.from_color(slot) - d.pairs.to_color(slot)) / 255.0).x();
     square.add(part, y * y);
   });
@@ -111,9 +113,13 @@ void add_colors(MetricSums& sums, const Findings& f, const Direction& estimate, 
 
 void add_recall(MetricSums& sums, const Direction& d, const LocalColorRecall& recall) {
   Column recalled(sums, d.prefix + "recalled"), covered(sums, d.prefix + "covered");
+  Column colored(sums, d.prefix + "colored");
   for_each_slot(d, [&](std::size_t slot, std::uint32_t part) {
-    recalled.add(part, recall.classes[slot] == RecallClass::kRecalled ? 1.0 : 0.0);
-    covered.add(part, recall.classes[slot] != RecallClass::kNotCovered ? 1.0 : 0.0);
+    const RecallClass found = recall.classes[slot];
+    if (found == RecallClass::kNoColor) return;
+    colored.add(part, 1.0);
+    recalled.add(part, found == RecallClass::kRecalled ? 1.0 : 0.0);
+    covered.add(part, found != RecallClass::kNotCovered ? 1.0 : 0.0);
   });
 }
 
@@ -141,7 +147,8 @@ void add_voxels(MetricSums& sums, const Findings& f, const PartOf& part_of) {
   const EvaluationOptions& o = f.options;
   if (f.selection.contains("color_consistency") && f.pair.has_color()) {
     VoxelColumns spread(sums, "color_spread", o.ccs_voxel_m, part_of);
-    for (const auto& [index, trace] : voxel_color_spreads(f.pair.estimate, o.ccs_voxel_m, o.ccs_min_points)) {
+    for (const auto& [index, trace] : voxel_color_spreads(f.pair.estimate, o.ccs_voxel_m, o.ccs_min_points,
+                                                         o.ccs_singletons)) {
       spread.add(index, trace);
     }
   }

@@ -39,7 +39,8 @@ const std::vector<MetricInfo>& metric_catalog() {
        "Share of reference points with an estimated point within the radius whose color differs by at most 3 tau. "
        "Never above the coverage, the share with any estimated point there."},
       {"color_consistency", "CCS", "color consistency", "color", "unit RGB^2", "lower", true, false,
-       "Mean over the estimate's voxels of the trace of the color covariance: how much colors scatter within a voxel."},
+       "Mean over the estimate's voxels of the trace of the color covariance: how much colors scatter within a voxel. "
+       "One of a single point counts as 0 or is left out, as the parameters say."},
       {"delta_e", "dE00", "CIEDE2000", "color+", "1", "lower", true, false,
        "Perceived color difference (CIEDE2000) of nearest pairs within the radius of LCR: mean, median and 95th "
        "percentile of both directions."},
@@ -75,7 +76,8 @@ const std::vector<MetricInfo>& metric_catalog() {
        "How unevenly the Wasserstein distances are spread: standard deviation over mean among neighboring voxels, "
        "averaged."},
       {"mean_map_entropy", "MME", "mean map entropy", "mme", "nats", "lower", false, false,
-       "Mean entropy of the Gaussian of every point's neighborhood: lower is crisper. Needs no reference."},
+       "Mean entropy of the Gaussian of every point's neighborhood, where that is not flat to the rounding of its "
+       "coordinates: lower is crisper. Needs no reference."},
   };
   return catalog;
 }

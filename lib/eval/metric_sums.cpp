@@ -35,10 +35,17 @@ double mean_of_both(const Lookup& sum, const std::string& value, const std::stri
 double precision(const Lookup& within) { return within("estimate.n") / within.whole("estimate.n"); }
 double recall(const Lookup& within) { return within("reference.n") / within.whole("reference.n"); }
 
+/// Sum over the points that have a color; reports of before, when all had to, do not count them apart.
+double per_colored(const Lookup& sum, const std::string& value, const std::string& colored, const std::string& all) {
+  return sum.ratio(value, sum.has(colored) ? colored : all);
+}
+
 /// Of the worse direction, as color_psnr.
 double psnr_db(const Lookup& sum) {
-  const ColorPsnr psnr{Eigen::Vector3d::Constant(sum.ratio("estimate.sq_luma", "estimate.n")),
-                       Eigen::Vector3d::Constant(sum.ratio("reference.sq_luma", "reference.n"))};
+  const auto mse = [&](const std::string& map) {
+    return Eigen::Vector3d::Constant(per_colored(sum, map + "sq_luma", map + "luma_n", map + "n")).eval();
+  };
+  const ColorPsnr psnr{mse("estimate."), mse("reference.")};
   return psnr.psnr_db().x();
 }
 
@@ -55,7 +62,7 @@ constexpr Formula kFormulas[] = {
     {"color_fidelity", "estimate.color_distance",
      [](const Lookup& s) { return color_fidelity_db(mean_of_both(s, "color_distance", "color_n")); }},
     {"local_color_recall", "reference.recalled",
-     [](const Lookup& s) { return s.ratio("reference.recalled", "reference.n"); }},
+     [](const Lookup& s) { return per_colored(s, "reference.recalled", "reference.colored", "reference.n"); }},
     {"color_consistency", "color_spread.n",
      [](const Lookup& s) { return s.ratio("color_spread.sum", "color_spread.n"); }},
     {"delta_e", "estimate.delta_e", [](const Lookup& s) { return mean_of_both(s, "delta_e", "delta_e_n"); }},

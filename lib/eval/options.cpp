@@ -1,6 +1,7 @@
 #include "cmap/eval/options.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -65,13 +66,20 @@ std::vector<std::string> words(const char* name, const Json& value) {
 }
 
 std::vector<std::string> tools(const char* name, const Json& value) {
-  static const std::vector<std::string> kTools{"mapeval", "open3d", "mpeg", "cloudcompare", "tanksandtemples"};
   std::vector<std::string> list = words(name, value);
   for (const std::string& tool : list) {
-    if (std::ranges::count(kTools, tool) == 0)
-      refuse(name, tool, "is unknown; tools are mapeval, open3d, mpeg, cloudcompare, tanksandtemples");
+    if (std::ranges::count(peer_tools(), tool) == 0) {
+      refuse(name, tool, fmt::format("is unknown; tools are {}", fmt::join(peer_tools(), ", ")).c_str());
+    }
   }
   return list;
+}
+
+Singletons singletons_kind(const char* name, const Json& value) {
+  for (Singletons s : {Singletons::kZero, Singletons::kExclude, Singletons::kRefuse}) {
+    if (value == singletons_name(s)) return s;
+  }
+  refuse(name, value, "is none of zero, exclude, refuse");
 }
 
 std::vector<std::string> metric_names(const char* name, const Json& value) {
@@ -233,8 +241,11 @@ const std::vector<OptionSpec>& evaluation_option_specs() {
                   flag(n, value), o.lcr_curve),
       CMAP_OPTION("ccs-voxel", kNumber, "METERS", "voxel of color consistency", ccs_voxel_m, positive(n, value),
                   o.ccs_voxel_m),
-      CMAP_OPTION("ccs-min-points", kCount, "N", "points that such a voxel needs", ccs_min_points,
-                  count(n, value, 2, kMostPoints), o.ccs_min_points),
+      CMAP_OPTION("ccs-singletons", kWord, "zero|exclude|refuse",
+                  "a voxel of one point counts as 0, is left out, or ends the program", ccs_singletons,
+                  singletons_kind(n, value), singletons_name(o.ccs_singletons)),
+      CMAP_OPTION("ccs-min-points", kCount, "N", "points that such a voxel needs where others are left out",
+                  ccs_min_points, count(n, value, 2, kMostPoints), o.ccs_min_points),
       CMAP_OPTION("awd-voxel", kNumber, "METERS", "voxel of the average Wasserstein distance", awd_voxel_m,
                   positive(n, value), o.awd_voxel_m),
       CMAP_OPTION("awd-min-points", kCount, "N", "points of each map that such a voxel needs", awd_min_points,
@@ -251,7 +262,9 @@ const std::vector<OptionSpec>& evaluation_option_specs() {
                   positive_or_unset(n, value), optional_number(o.voxel_m)),
       CMAP_OPTION("crop", kNumbers, "X0,Y0,Z0,X1,Y1,Z1", "keep this box of both maps, in the reference frame", crop,
                   value.is_null() ? std::nullopt : std::optional(crop_box(n, value)), crop_json(o)),
-      CMAP_OPTION("as", kWords, "TOOLS", "also what mapeval, open3d, mpeg, cloudcompare or tanksandtemples would print",
+      CMAP_OPTION("as", kWords, "TOOLS",
+                  "also what color-map-evaluation (the paper's authors'), cloudanalyzer, mapeval, open3d, mpeg, "
+                  "cloudcompare or tanksandtemples would print",
                   as, tools(n, value), o.as),
       CMAP_OPTION("bootstrap", kCount, "N", "confidence intervals of 95 % from N replicates of blocks of the map",
                   bootstrap, count(n, value, 0, 1'000'000), o.bootstrap),
@@ -298,6 +311,16 @@ const std::vector<OptionSpec>& evaluation_option_specs() {
 
 ReadOptions read_options(const EvaluationOptions& options, bool sha256) {
   return {.sha256 = sha256, .keep_noise = options.keep_noise, .classes = options.classes};
+}
+
+const std::vector<std::string>& peer_tools() {
+  static const std::vector<std::string> tools{"color-map-evaluation", "cloudanalyzer", "mapeval",        "open3d",
+                                              "mpeg",                 "cloudcompare",  "tanksandtemples"};
+  return tools;
+}
+
+const char* singletons_name(Singletons singletons) {
+  return singletons == Singletons::kZero ? "zero" : singletons == Singletons::kExclude ? "exclude" : "refuse";
 }
 
 double tanks_and_temples_tau_m(const EvaluationOptions& options) {

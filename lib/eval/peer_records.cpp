@@ -1,7 +1,15 @@
 #include "eval/peer_records.hpp"
 
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
 #include "cmap/align/tanks_and_temples.hpp"
 #include "cmap/core/color.hpp"
+#include "cmap/metrics/color_consistency.hpp"
+#include "cmap/metrics/color_distance.hpp"
+#include "cmap/metrics/geometry.hpp"
 #include "cmap/metrics/peers.hpp"
 #include "eval/cloud_of.hpp"
 #include "eval/json_number.hpp"
@@ -71,9 +79,88 @@ MpegCloud mpeg_cloud(const IndexedMap& map) {
   return cloud;
 }
 
+/// Tools that know no points without color get none.
+bool every_point_has_color(const MapPair& pair) {
+  return pair.has_color() && pair.reference.n_without_color + pair.estimate.n_without_color == 0;
+}
+
+Json color_map_evaluation_record(const Findings& f, std::vector<Warning>& warnings) {
+  if (!every_point_has_color(f.pair)) {
+    warnings.push_back({"color_map_evaluation_needs_color",
+                        "Color-Map-Evaluation's numbers need a color at every point of both maps: null"});
+    return nullptr;
+  }
+  constexpr double kVoxel_m = 0.1, kTau = 0.1, kRadius_m = 0.5;  // its defaults
+  const double cd = color_distance(f.pair).value(), cf_db = color_fidelity_db(cd);
+  const LocalColorRecall recall =
+      local_color_recall(f.pair, {.tau = kTau, .radius_m = kRadius_m, .radius_steps = 0.0});
+  return {{"definition",
+           "Color-Map-Evaluation 0.1.0 at its defaults: tau 0.1, radius 0.5 m, voxels of 0.1 m, singletons zero"},
+          {"CD", cd},
+          {"CD_rgb255", 255.0 * cd},
+          {"CF_dB", std::isinf(cf_db) ? Json("+inf") : Json(cf_db)},
+          {"LCR", recall.value()},
+          {"LCR_percent", 100.0 * recall.value()},
+          {"CCS", color_consistency(f.pair.estimate, kVoxel_m, 2).zero}};
+}
+
+Json cloudanalyzer_evaluate(const Findings& f) {
+  const std::span<const double> estimate = f.pair.nearest_in_reference.sq_dist;
+  const std::span<const double> reference = f.pair.nearest_in_estimate.sq_dist;
+  const CloudAnalyzerCurve curve = cloudanalyzer_curve(estimate, reference);
+  const CloudAnalyzerSummary forth = cloudanalyzer_summary(estimate), back = cloudanalyzer_summary(reference);
+  const auto summary = [](const CloudAnalyzerSummary& s) -> Json {
+    return {{"mean", s.mean_m}, {"median", s.median_m}, {"max", s.max_m}, {"std", s.standard_deviation_m}};
+  };
+  Json scores = Json::array();
+  for (const CloudAnalyzerScore& s : curve.scores) {
+    scores.push_back({{"threshold", s.threshold_m}, {"precision", s.precision}, {"recall", s.recall}, {"f1", s.f1}});
+  }
+  return {{"source_points", estimate.size()},
+          {"target_points", reference.size()},
+          {"chamfer_distance", 0.5 * (forth.mean_m + back.mean_m)},
+          {"hausdorff_distance", std::max(forth.max_m, back.max_m)},
+          {"f1_scores", scores},
+          {"auc", curve.auc},
+          {"distance_stats", {{"source_to_target", summary(forth)}, {"target_to_source", summary(back)}}}};
+}
+
+/// Without voxels it prints neither AWD nor SCS.
+Json cloudanalyzer_map_evaluate(const Findings& f) {
+  constexpr double kVoxel_m = 3.0;  // its defaults
+  constexpr std::uint64_t kMinPoints = 100;
+  constexpr int kRadiusVoxels = 5;
+  constexpr std::array kThresholds_m{0.2, 0.1, 0.08, 0.05, 0.01};
+  const DistanceStats forth = distance_stats(f.pair.nearest_in_reference.sq_dist, kThresholds_m, kThresholds_m[0]);
+  const DistanceStats back = distance_stats(f.pair.nearest_in_estimate.sq_dist, kThresholds_m, kThresholds_m[0]);
+  Json fields{{"n_est", forth.n},
+              {"n_ref", back.n},
+              {"mean_est_to_ref_m", forth.mean_m},
+              {"mean_ref_to_est_m", back.mean_m},
+              {"chamfer_m", forth.mean_m + back.mean_m}};
+  for (std::size_t t = 0; t < kThresholds_m.size(); ++t) {
+    fields[fmt::format("accuracy@{:.3f}m", kThresholds_m[t])] = forth.share_within(t);
+    fields[fmt::format("completeness@{:.3f}m", kThresholds_m[t])] = back.share_within(t);
+  }
+  fields[fmt::format("fscore@{:.3f}m", kThresholds_m[0])] = f_score(forth.share_within(0), back.share_within(0));
+  const CloudAnalyzerStructure structure =
+      cloudanalyzer_structure(gaussian_pairs(f.pair, kVoxel_m, kMinPoints), kRadiusVoxels);
+  if (std::isfinite(structure.awd_m)) fields["awd_m"] = structure.awd_m;
+  if (std::isfinite(structure.scs)) fields["scs"] = structure.scs;
+  fields["n_awd_voxels"] = structure.n_awd_voxels;
+  fields["n_scs_voxels"] = structure.n_scs_voxels;
+  return fields;
+}
+
+Json cloudanalyzer_record(const Findings& f) {
+  return {{"definition", "CloudAnalyzer 0.6.0 at its defaults: commands evaluate and map-evaluate"},
+          {"evaluate", cloudanalyzer_evaluate(f)},
+          {"map-evaluate", cloudanalyzer_map_evaluate(f)}};
+}
+
 Json mpeg_record(const Findings& f, std::vector<Warning>& warnings) {
-  if (!f.pair.has_color()) {
-    warnings.push_back({"mpeg_needs_color", "pc_error's color numbers need color in both maps: null"});
+  if (!every_point_has_color(f.pair)) {
+    warnings.push_back({"mpeg_needs_color", "pc_error's color numbers need a color at every point of both maps: null"});
     return nullptr;
   }
   const auto direction = [](const MpegDirection& d) -> Json {
@@ -112,6 +199,8 @@ Json tanks_and_temples_record(const Findings& f) {
 Json peer_records(const Findings& f, std::vector<Warning>& warnings) {
   Json records;
   for (const std::string& tool : f.options.as) {
+    if (tool == "color-map-evaluation") records[tool] = color_map_evaluation_record(f, warnings);
+    if (tool == "cloudanalyzer") records[tool] = cloudanalyzer_record(f);
     if (tool == "mapeval") records[tool] = mapeval_record(f);
     if (tool == "open3d") records[tool] = open3d_record(f);
     if (tool == "cloudcompare") records[tool] = cloudcompare_record(f);

@@ -35,12 +35,24 @@ Json consistency_fields(const EvaluationOptions& options, const SpatialConsisten
 Json entropy_fields(const EvaluationOptions& options, const Neighborhoods& neighborhoods) {
   const auto numbers = [&](const NeighborhoodShape& shape) -> Json {
     const MeanMapEntropy mme = mean_map_entropy(shape, options.mme_min_neighbors);
-    return {{"value", json_number(mme.value)}, {"n", mme.n}, {"n_left_out", mme.n_left_out}};
+    return {{"value", json_number(mme.value)}, {"n", mme.n}, {"n_left_out", mme.n_left_out}, {"n_flat", mme.n_flat}};
   };
   Json fields = numbers(neighborhoods.estimate);
   fields["parameters"] = {{"radius_m", options.mme_radius_m}, {"min_neighbors", options.mme_min_neighbors}};
   fields["reference"] = numbers(neighborhoods.reference);
   return fields;
+}
+
+Warning why_no_entropy(const EvaluationOptions& options, std::uint64_t n_flat) {
+  if (n_flat == 0) {
+    return {"mean_map_entropy_no_points",
+            fmt::format("no point of the estimate has {} neighbors within {} m: no mean map entropy",
+                        options.mme_min_neighbors, options.mme_radius_m)};
+  }
+  return {"mean_map_entropy_flat",
+          fmt::format("the neighbors within {} m of all {} points that have enough are flat to the rounding of their "
+                      "coordinates: no mean map entropy",
+                      options.mme_radius_m, n_flat)};
 }
 
 }  // namespace
@@ -71,11 +83,7 @@ std::vector<MetricRecord> entropy_records(const Findings& f, std::vector<Warning
   RecordList records(f.selection);
   records.add("mean_map_entropy", [&] {
     Json fields = entropy_fields(f.options, *f.neighborhoods);
-    if (fields["value"].is_null()) {
-      warnings.push_back({"mean_map_entropy_no_points",
-                          fmt::format("no point of the estimate has {} neighbors within {} m: no mean map entropy",
-                                      f.options.mme_min_neighbors, f.options.mme_radius_m)});
-    }
+    if (fields["value"].is_null()) warnings.push_back(why_no_entropy(f.options, fields["n_flat"]));
     return fields;
   });
   return records.take();

@@ -1,8 +1,6 @@
 #include "cmap/metrics/color_consistency.hpp"
 
 #include <array>
-#include <limits>
-#include <numeric>
 #include <stdexcept>
 #include <vector>
 
@@ -17,50 +15,74 @@ struct ColorSums {
   std::uint64_t n = 0;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double sum_sq = 0.0;
+  Eigen::Vector3f place = Eigen::Vector3f::Zero();  ///< of the first point
+  bool one_place = true;
 
-  /// Trace of the covariance in unit RGB squared.
+  void add(const Eigen::Vector3d& color, const Eigen::Vector3f& offset) {
+    if (n == 0) place = offset;
+    one_place = one_place && offset == place;
+    ++n;
+    sum += color;
+    sum_sq += color.squaredNorm();
+  }
+
+  /// Trace of the covariance in unit RGB squared; 0 of one point.
   double covariance_trace() const {
+    if (n < 2) return 0.0;
     const auto count = static_cast<double>(n);
     return std::max(0.0, (sum_sq - sum.squaredNorm() / count) / (count - 1.0)) / (255.0 * 255.0);
   }
 };
 
-/// result_of(index, trace) for every voxel with at least min_points points.
-template <class ResultOf>
-auto collect_spreads(const IndexedMap& map, double voxel_m, std::uint64_t min_points, ResultOf&& result_of) {
+struct OccupiedVoxel {
+  VoxelColorSpread spread;
+  std::uint64_t n;
+  bool one_place;
+};
+
+std::vector<OccupiedVoxel> occupied_voxels(const IndexedMap& map, double voxel_m) {
   if (!map.has_color()) throw std::invalid_argument("color_consistency: the map needs colors");
   const VoxelFrame frame(map.index.bounds(), voxel_m);
   const auto add = [&](ColorSums& sums, std::size_t slot, const Eigen::Vector3d&, const VoxelKey&) {
-    const Eigen::Vector3d color = map.color(slot);
-    ++sums.n;
-    sums.sum += color;
-    sums.sum_sq += color.squaredNorm();
+    if (map.has_color_at(slot)) sums.add(map.color(slot), map.index.points.offset(slot));
   };
-  using Result = std::invoke_result_t<ResultOf, const std::array<std::int64_t, 3>&, double>;
-  return collect_voxels<ColorSums>(map.index.points, frame, add,
-                                   [&](const VoxelKey& key, const ColorSums& sums) -> std::optional<Result> {
-                                     if (sums.n < min_points) return std::nullopt;
-                                     return result_of(frame.index(key), sums.covariance_trace());
-                                   });
+  const auto finish = [&](const VoxelKey& key, const ColorSums& sums) -> std::optional<OccupiedVoxel> {
+    if (sums.n == 0) return std::nullopt;
+    return OccupiedVoxel{{frame.index(key), sums.covariance_trace()}, sums.n, sums.one_place};
+  };
+  return collect_voxels<ColorSums>(map.index.points, frame, add, finish);
 }
 
 }  // namespace
 
-std::vector<VoxelColorSpread> voxel_color_spreads(const IndexedMap& map, double voxel_m, std::uint64_t min_points) {
-  return collect_spreads(map, voxel_m, min_points,
-                         [](const auto& index, double trace) {
-                           return VoxelColorSpread{index, trace};
-                         })
-      .results;
+std::vector<VoxelColorSpread> voxel_color_spreads(const IndexedMap& map, double voxel_m, std::uint64_t min_points,
+                                                  Singletons singletons) {
+  std::vector<VoxelColorSpread> spreads;
+  for (const OccupiedVoxel& voxel : occupied_voxels(map, voxel_m)) {
+    if (singletons != Singletons::kExclude || voxel.n >= min_points) spreads.push_back(voxel.spread);
+  }
+  return spreads;
 }
 
 ColorConsistency color_consistency(const IndexedMap& map, double voxel_m, std::uint64_t min_points) {
-  const auto voxels = collect_spreads(map, voxel_m, min_points, [](const auto&, double trace) { return trace; });
-  const std::vector<double>& traces = voxels.results;
   ColorConsistency consistency;
-  consistency.n_voxels = traces.size();
-  consistency.n_voxels_below_min = voxels.n_without_result;
-  consistency.mean = std::accumulate(traces.begin(), traces.end(), 0.0) / static_cast<double>(traces.size());
+  std::vector<double> traces;
+  double sum = 0.0, sum_of_enough = 0.0;
+  for (const OccupiedVoxel& voxel : occupied_voxels(map, voxel_m)) {
+    ++consistency.n_occupied;
+    sum += voxel.spread.trace;
+    if (voxel.n == 1) {
+      ++consistency.n_singletons;
+      continue;
+    }
+    traces.push_back(voxel.spread.trace);
+    if (voxel.one_place) ++consistency.n_one_place;
+    if (voxel.n < min_points) continue;
+    ++consistency.n_enough;
+    sum_of_enough += voxel.spread.trace;
+  }
+  consistency.zero = sum / static_cast<double>(consistency.n_occupied);
+  consistency.exclude = sum_of_enough / static_cast<double>(consistency.n_enough);
   consistency.median = quantiles(traces, std::array{0.5}).front();
   return consistency;
 }

@@ -1,5 +1,6 @@
 #include "cmap/metrics/color_distance.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -23,8 +24,8 @@ DirectedColorDistance directed_distance(const NearestPairs& pairs, const ColorDi
   const auto total = ordered_sum<CountedSum>(pairs.size(), kLoopChunk, [&](std::size_t begin, std::size_t end) {
     CountedSum part;
     for (std::size_t i = begin; i < end; ++i) {
-      const double distance = pairs.distance_m(i);
-      if (distance <= options.min_distance_m || distance > options.max_distance_m) continue;
+      if (pairs.is_within(i, options.min_distance_m) || !pairs.is_within(i, options.max_distance_m)) continue;
+      if (!pairs.has_colors(i)) continue;
       part.sum += pairs.color_difference(i, from_gain, to_gain).norm();
       ++part.n;
     }
@@ -35,8 +36,10 @@ DirectedColorDistance directed_distance(const NearestPairs& pairs, const ColorDi
 
 struct VectorSum {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  std::uint64_t n = 0;
   VectorSum& operator+=(const VectorSum& other) {
     sum += other.sum;
+    n += other.n;
     return *this;
   }
 };
@@ -45,12 +48,14 @@ Eigen::Vector3d mean_sq_ycbcr(const NearestPairs& pairs) {
   const auto total = ordered_sum<VectorSum>(pairs.size(), kLoopChunk, [&](std::size_t begin, std::size_t end) {
     VectorSum part;
     for (std::size_t i = begin; i < end; ++i) {
+      if (!pairs.has_colors(i)) continue;
+      ++part.n;
       // The transform is linear: that of the difference is the difference of both.
       part.sum += rgb_to_ycbcr709((pairs.from_color(i) - pairs.to_color(i)) / 255.0).cwiseAbs2();
     }
     return part;
   });
-  return total.sum / static_cast<double>(pairs.size());
+  return total.sum / static_cast<double>(total.n);
 }
 
 }  // namespace
@@ -70,7 +75,7 @@ ExposureGains exposure_gains(const MapPair& pair, double max_distance_m) {
   ExposureGains gains{Eigen::Vector3d::Constant(kNone), 0};
   std::array<std::vector<double>, 3> ratios;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (pairs.distance_m(i) > max_distance_m) continue;
+    if (!pairs.is_within(i, max_distance_m) || !pairs.has_colors(i)) continue;
     ++gains.n_pairs;
     const Eigen::Vector3d estimate = pairs.from_color(i);
     const Eigen::Vector3d reference = pairs.to_color(i);
@@ -92,9 +97,10 @@ ColorPsnr color_psnr(const MapPair& pair) {
 
 Eigen::Vector3d ColorPsnr::psnr_db() const {
   constexpr double kNoise = 1e-24;  // what rounding leaves of a channel without any difference
-  return mse_estimate_to_reference.cwiseMax(mse_reference_to_estimate).unaryExpr([](double mse) {
-    if (mse < kNoise) return std::numeric_limits<double>::infinity();
-    return -10.0 * std::log10(mse);
+  return mse_estimate_to_reference.binaryExpr(mse_reference_to_estimate, [](double a, double b) {
+    if (std::isnan(a) || std::isnan(b)) return kNone;
+    const double mse = std::max(a, b);
+    return mse < kNoise ? std::numeric_limits<double>::infinity() : -10.0 * std::log10(mse);
   });
 }
 
@@ -107,8 +113,7 @@ DeltaEStats delta_e(const NearestPairs& pairs, double max_distance_m) {
   std::vector<double> values(pairs.size(), kNone);
   parallel_chunks(pairs.size(), kLoopChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      if (pairs.distance_m(i) > max_distance_m) continue;
-      values[i] = delta_e(pairs, i);
+      if (pairs.is_within(i, max_distance_m) && pairs.has_colors(i)) values[i] = delta_e(pairs, i);
     }
   });
   std::erase_if(values, [](double v) { return std::isnan(v); });

@@ -36,7 +36,8 @@ struct Bands {
   }
 };
 
-Bands sum_bands(std::span<const double> sq_dist, const std::vector<double>& sorted_thresholds, double truncation_m) {
+Bands sum_bands(std::span<const double> sq_dist, const std::vector<double>& sorted_thresholds, double truncation_m,
+                const DistanceRounding& rounding) {
   return ordered_sum<Bands>(sq_dist.size(), kLoopChunk, [&](std::size_t begin, std::size_t end) {
     Bands sums;
     sums.bands.resize(sorted_thresholds.size() + 1);
@@ -44,6 +45,10 @@ Bands sum_bands(std::span<const double> sq_dist, const std::vector<double>& sort
       const double distance = std::sqrt(sq_dist[i]);
       std::size_t b = 0;
       while (b < sorted_thresholds.size() && distance > sorted_thresholds[b]) ++b;
+      while (b > 0 && distance <= sorted_thresholds[b - 1] + rounding.most_m &&
+             distance <= sorted_thresholds[b - 1] + rounding.of_pair_m(i)) {
+        --b;
+      }
       sums.bands[b] += {1, distance, sq_dist[i]};
       sums.truncated_sum += std::min(distance, truncation_m);
       sums.max_sq = std::max(sums.max_sq, sq_dist[i]);
@@ -54,12 +59,12 @@ Bands sum_bands(std::span<const double> sq_dist, const std::vector<double>& sort
 
 }  // namespace
 
-DistanceStats distance_stats(std::span<const double> sq_dist, std::span<const double> thresholds_m,
-                             double truncation_m) {
+DistanceStats distance_stats(std::span<const double> sq_dist, std::span<const double> thresholds_m, double truncation_m,
+                             const DistanceRounding& rounding) {
   if (sq_dist.empty()) throw std::invalid_argument("distance_stats: no distances");
   std::vector<double> sorted(thresholds_m.begin(), thresholds_m.end());
   std::sort(sorted.begin(), sorted.end());
-  Bands sums = sum_bands(sq_dist, sorted, truncation_m);
+  Bands sums = sum_bands(sq_dist, sorted, truncation_m, rounding);
   for (std::size_t b = 1; b < sums.bands.size(); ++b) sums.bands[b] += sums.bands[b - 1];
 
   const auto n = static_cast<double>(sq_dist.size());

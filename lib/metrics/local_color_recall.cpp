@@ -14,14 +14,45 @@ namespace {
 constexpr int kCurvePoints = 15;
 double curve_tau(int i) { return 0.02 * (i + 1); }
 
-/// Largest squared color distance (1/255 units) that counts as right.
-float color_limit(double tau) { return static_cast<float>((3.0 * tau * 255.0) * (3.0 * tau * 255.0)); }
+/// Largest squared color distance (1/255 units) that counts as right, rounded down.
+float color_limit(double tau) {
+  constexpr double kRounding = 1e-12;  // 3 x 0.2 is not 0.6 in double
+  const double limit = 255.0 * (3.0 * tau + kRounding);
+  const auto nearest = static_cast<float>(limit * limit);
+  return static_cast<double>(nearest) <= limit * limit ? nearest : std::nextafter(nearest, 0.0f);
+}
 
 float next_above(float v) { return std::nextafter(v, std::numeric_limits<float>::infinity()); }
 
 RecallClass class_of(float sq_color, float right) {
   if (sq_color == kNoneWithin) return RecallClass::kNotCovered;
   return sq_color <= right ? RecallClass::kRecalled : RecallClass::kWrongColor;
+}
+
+/// The colors, with a far one in place of those that are not there: boxes and comparisons need numbers.
+Array<ColorBlock> without_gaps(Array<ColorBlock> colors, float far) {
+  const auto fill = [&](float (&values)[kBlockSize]) {
+    for (float& v : values) v = std::isnan(v) ? far : v;
+  };
+  for (ColorBlock& block : colors) {
+    fill(block.r);
+    fill(block.g);
+    fill(block.b);
+  }
+  return colors;
+}
+
+/// The best color distance of every reference point.
+Array<float> best_colors(const MapPair& pair, const ColorSearch& search) {
+  const auto find = [&](const Array<ColorBlock>& reference, const Array<ColorBlock>& estimate) {
+    return most_similar_color(pair.estimate.index, estimate, pair.reference.index.points, reference,
+                              pair.nearest_in_estimate, search);
+  };
+  if (pair.reference.n_without_color + pair.estimate.n_without_color == 0) {
+    return find(pair.reference.colors, pair.estimate.colors);
+  }
+  constexpr float kFar = 1e9f;  // on either side: no color is like another's missing one
+  return find(without_gaps(pair.reference.colors, -kFar), without_gaps(pair.estimate.colors, kFar));
 }
 
 struct RecallCounts {
@@ -34,24 +65,26 @@ struct RecallCounts {
 };
 
 /// Fills in the classes of all points and counts them.
-RecallCounts classify(const Array<float>& best, float right, Array<RecallClass>& classes) {
+RecallCounts classify(const IndexedMap& reference, const Array<float>& best, float right,
+                      Array<RecallClass>& classes) {
   return ordered_sum<RecallCounts>(classes.size(), kLoopChunk, [&](std::size_t begin, std::size_t end) {
     RecallCounts counts;
     for (std::size_t j = begin; j < end; ++j) {
-      classes[j] = class_of(best[j], right);
-      counts.n_covered += classes[j] != RecallClass::kNotCovered ? 1 : 0;
+      classes[j] = reference.has_color_at(j) ? class_of(best[j], right) : RecallClass::kNoColor;
       counts.n_recalled += classes[j] == RecallClass::kRecalled ? 1 : 0;
+      counts.n_covered += classes[j] == RecallClass::kRecalled || classes[j] == RecallClass::kWrongColor ? 1 : 0;
     }
     return counts;
   });
 }
 
-RecallCurve recall_curve(const Array<float>& best, std::size_t n) {
+/// `best` of all n reference points that have a color; those without are never recalled.
+RecallCurve recall_curve(const Array<float>& best, std::uint64_t n) {
   RecallCurve curve;
   for (int i = 0; i < kCurvePoints; ++i) {
     std::uint64_t n_recalled = 0;
     const float right = color_limit(curve_tau(i));
-    for (std::size_t j = 0; j < n; ++j) n_recalled += class_of(best[j], right) == RecallClass::kRecalled ? 1 : 0;
+    for (float sq_color : best) n_recalled += class_of(sq_color, right) == RecallClass::kRecalled ? 1 : 0;
     curve.tau.push_back(curve_tau(i));
     curve.value.push_back(static_cast<double>(n_recalled) / static_cast<double>(n));
   }
@@ -70,13 +103,12 @@ LocalColorRecall local_color_recall(const MapPair& pair, const LocalColorRecallO
   const float stop_at = options.curve ? std::min(right, color_limit(curve_tau(0))) : right;
   const float limit = options.curve ? std::max(right, color_limit(curve_tau(kCurvePoints - 1))) : right;
   const Array<float> best =
-      most_similar_color(pair.estimate.index, pair.estimate.colors, pair.reference.index.points, pair.reference.colors,
-                         pair.nearest_in_estimate, {options.radius_m, stop_at, next_above(limit)});
+      best_colors(pair, {options.radius_m, stop_at, next_above(limit), options.radius_steps});
 
   LocalColorRecall recall;
-  recall.n_reference = pair.reference.size();
-  recall.classes.resize(recall.n_reference);
-  const RecallCounts counts = classify(best, right, recall.classes);
+  recall.n_reference = pair.reference.size() - pair.reference.n_without_color;
+  recall.classes.resize(pair.reference.size());
+  const RecallCounts counts = classify(pair.reference, best, right, recall.classes);
   recall.n_covered = counts.n_covered;
   recall.n_recalled = counts.n_recalled;
   if (options.curve) recall.curve = recall_curve(best, recall.n_reference);

@@ -7,7 +7,8 @@
 #include <limits>
 #include <numbers>
 
-#include "cmap/metrics/mean_map_entropy.hpp"
+#include "cmap/core/parallel.hpp"
+#include "metrics/counted_sum.hpp"
 
 namespace cmap {
 namespace {
@@ -67,8 +68,17 @@ std::vector<VoxelDistance> mapeval_wasserstein_distances(std::span<const Gaussia
 }
 
 MapEvalEntropy mapeval_entropy(const NeighborhoodShape& shape, std::uint64_t min_neighbors) {
-  const MeanMapEntropy entropy = mean_map_entropy(shape, min_neighbors);
-  return {entropy.value - std::log(2.0 * std::numbers::pi * std::numbers::e), entropy.n};
+  const std::size_t n_points = shape.n_neighbors.size();
+  const auto total = ordered_sum<CountedSum>(n_points, kLoopChunk, [&](std::size_t begin, std::size_t end) {
+    CountedSum part;
+    for (std::size_t i = begin; i < end; ++i) {
+      // NaN, for too few neighbors, is not above 0 either.
+      if (shape.n_neighbors[i] < min_neighbors || !(shape.covariance_det[i] > 0.0)) continue;
+      part += {std::log(shape.covariance_det[i]), 1};
+    }
+    return part;
+  });
+  return {0.5 * (std::log(2.0 * std::numbers::pi * std::numbers::e) + ratio(total.sum, total.n)), total.n};
 }
 
 Open3dRegistration open3d_registration(std::span<const double> sq_dist, double threshold_m) {

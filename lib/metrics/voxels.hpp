@@ -23,15 +23,9 @@ struct CellRun {
 /// The cloud as runs, ordered by cell and slot. Neighbors on the curve are neighbors in space, so runs are few.
 std::vector<CellRun> cell_runs(const PointBlocks& points, const VoxelFrame& frame);
 
-template <class Result>
-struct CollectedVoxels {
-  std::vector<Result> results;         ///< ordered by cell
-  std::uint64_t n_without_result = 0;  ///< voxels that gave none
-};
-
 /// Sums the points of every voxel with add(sums, slot, world, key) and turns them into a result, or none, with
-/// finish(key, sums). Cells of voxels are independent: each sums into a small map of its own, in parallel and in the
-/// order of slots, so that the result is the same for any number of threads.
+/// finish(key, sums); results are ordered by cell. Cells of voxels are independent: each sums into a small map of its
+/// own, in parallel and in the order of slots, so that the result is the same for any number of threads.
 template <class Sums, class AddPoint, class Finish>
 auto collect_voxels(const PointBlocks& points, const VoxelFrame& frame, AddPoint add, Finish finish) {
   using Result = typename std::invoke_result_t<Finish, const VoxelKey&, const Sums&>::value_type;
@@ -43,7 +37,7 @@ auto collect_voxels(const PointBlocks& points, const VoxelFrame& frame, AddPoint
     begin = end;
   }
 
-  std::vector<CollectedVoxels<Result>> by_cell(cells.size());
+  std::vector<std::vector<Result>> by_cell(cells.size());
   parallel_chunks(cells.size(), 1, [&](std::size_t i, std::size_t) {
     VoxelMap<Sums> voxels;
     for (const CellRun& run : cells[i]) {
@@ -54,19 +48,12 @@ auto collect_voxels(const PointBlocks& points, const VoxelFrame& frame, AddPoint
       }
     }
     for (const auto& [key, sums] : voxels.entries()) {
-      if (auto result = finish(key, sums)) {
-        by_cell[i].results.push_back(std::move(*result));
-      } else {
-        ++by_cell[i].n_without_result;
-      }
+      if (auto result = finish(key, sums)) by_cell[i].push_back(std::move(*result));
     }
   });
 
-  CollectedVoxels<Result> all;
-  for (CollectedVoxels<Result>& cell : by_cell) {
-    std::ranges::move(cell.results, std::back_inserter(all.results));
-    all.n_without_result += cell.n_without_result;
-  }
+  std::vector<Result> all;
+  for (std::vector<Result>& cell : by_cell) std::ranges::move(cell, std::back_inserter(all));
   return all;
 }
 

@@ -43,7 +43,7 @@ std::vector<VoxelGaussian> voxel_gaussians(const PointBlocks& points, const Voxe
     if (sums.n < min_points) return std::nullopt;
     return VoxelGaussian{frame.index(key), sums.gaussian()};
   };
-  std::vector<VoxelGaussian> voxels = collect_voxels<MomentSums>(points, frame, add, finish).results;
+  std::vector<VoxelGaussian> voxels = collect_voxels<MomentSums>(points, frame, add, finish);
   std::ranges::sort(voxels, {}, &VoxelGaussian::index);
   return voxels;
 }

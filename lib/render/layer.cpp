@@ -99,7 +99,8 @@ Layer consistency_layer(const Evaluation& evaluation, const LayerOptions& option
   if (!map.has_color()) throw UnsupportedError("layer ccs: the estimate needs color");
   const double voxel_m = evaluation.options.ccs_voxel_m;
   VoxelValues voxels(map, voxel_m);
-  for (const auto& [index, trace] : voxel_color_spreads(map, voxel_m, evaluation.options.ccs_min_points)) {
+  for (const auto& [index, trace] : voxel_color_spreads(map, voxel_m, evaluation.options.ccs_min_points,
+                                                       evaluation.options.ccs_singletons)) {
     voxels.set(index, trace);
   }
   return voxel_layer(map, fmt::format("Color spread in voxels of {} m", voxel_m), ColorMap::kInferno, "unit RGB²",
@@ -156,10 +157,11 @@ Layer recall_layer(const Evaluation& evaluation) {
   Layer layer;
   layer.title = "Local color recall";
   layer.points = &evaluation.pair.reference.index.points;
-  for (RecallClass c : {RecallClass::kRecalled, RecallClass::kWrongColor, RecallClass::kNotCovered}) {
-    const RecallClassLook& look = look_of(c);
-    layer.classes.push_back({std::string(look.label), look.color});
-  }
+  const auto add_class = [&](RecallClass c) {
+    layer.classes.push_back({std::string(look_of(c).label), look_of(c).color});
+  };
+  for (RecallClass c : {RecallClass::kRecalled, RecallClass::kWrongColor, RecallClass::kNotCovered}) add_class(c);
+  if (evaluation.pair.reference.n_without_color > 0) add_class(RecallClass::kNoColor);
   layer.colors =
       painted(layer.points->size, [&](std::size_t slot) { return look_of(evaluation.recall->classes[slot]).color; });
   return layer;

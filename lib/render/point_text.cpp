@@ -9,7 +9,8 @@ std::vector<std::string> describe_point(const IndexedMap& map, std::size_t slot)
   std::vector<std::string> lines{fmt::format("x {:.3f}  y {:.3f}  z {:.3f} m", p.x(), p.y(), p.z())};
   if (map.has_color()) {
     const Eigen::Vector3d c = map.color(slot);
-    lines.push_back(fmt::format("color {:.4g} {:.4g} {:.4g} of 255", c[0], c[1], c[2]));
+    lines.push_back(map.has_color_at(slot) ? fmt::format("color {:.4g} {:.4g} {:.4g} of 255", c[0], c[1], c[2])
+                                           : "no color");
   }
   return lines;
 }
@@ -22,7 +23,9 @@ std::vector<std::string> describe_point(const Evaluation& evaluation, const Poin
   for (std::string& line : describe_point(pairs.from, slot)) lines.push_back(std::move(line));
   const char* other = of_reference ? "estimate" : "reference";
   lines.push_back(fmt::format("distance to the {} {:.4g} m", other, pairs.distance_m(slot)));
-  if (pair.has_color()) lines.push_back(fmt::format("color distance {:.4g} unit RGB", pairs.color_distance(slot)));
+  if (pair.has_color() && pairs.has_colors(slot)) {
+    lines.push_back(fmt::format("color distance {:.4g} unit RGB", pairs.color_distance(slot)));
+  }
   if (of_reference && evaluation.recall) {
     lines.push_back(fmt::format("local color recall: {}", look_of(evaluation.recall->classes[slot]).label));
   }

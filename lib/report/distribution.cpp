@@ -17,6 +17,7 @@ Array<double> errors_of(const NearestPairs& pairs, PairError error) {
   parallel_chunks(pairs.size(), kLoopChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t slot = begin; slot < end; ++slot) errors[slot] = (pairs.*error)(slot);
   });
+  std::erase_if(errors, [](double v) { return std::isnan(v); });  // pairs without both colors
   return errors;
 }
 

@@ -111,9 +111,10 @@ Json error_layer(const char* id, const char* title, const char* field, const cha
           {"unit", unit}};
 }
 
-Json recall_layer() {
+Json recall_layer(const IndexedMap& reference) {
   Json classes = Json::array();
   for (const RecallClassLook& look : kRecallClassLooks) {
+    if (&look == &look_of(RecallClass::kNoColor) && reference.n_without_color == 0) continue;
     classes.push_back({{"label", look.label}, {"color", {look.color[0], look.color[1], look.color[2]}}});
   }
   return {{"id", "lcr"},        {"title", "Local color recall"},
@@ -154,10 +155,13 @@ PageData page_data(const Json& report, const Evaluation& evaluation) {
   Json distributions = Json::array();
   Json layers{map_layer(pair.reference, "reference", "Reference", reference),
               map_layer(pair.estimate, "estimate", "Estimate", estimate)};
-  if (recall != nullptr) layers.push_back(recall_layer());
+  if (recall != nullptr) layers.push_back(recall_layer(pair.reference));
   if (pair.has_color()) {
     const Distribution colors = distribution_of(pair, &NearestPairs::color_distance);
-    layers.push_back(error_layer("color-distance", "Color distance", "color_distance", "inferno", "unit RGB", colors));
+    const bool every_color = pair.reference.n_without_color + pair.estimate.n_without_color == 0;
+    layers.push_back(error_layer("color-distance",
+                                 every_color ? "Color distance" : "Color distance (0 where a color is missing)",
+                                 "color_distance", "inferno", "unit RGB", colors));
     distributions.push_back(
         distribution_json("color_distance", "Color distance to the nearest point", "unit RGB", colors, pair));
   }

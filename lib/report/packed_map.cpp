@@ -72,6 +72,7 @@ void add_colors(PlaneWriter& writer, const IndexedMap& map) {
   }
 }
 
+/// The page's planes hold numbers only: an error that is not there, for want of a color, is packed as 0.
 template <class ErrorAt>
 void add_error(PlaneWriter& writer, const char* field, const char* unit, const Array<std::uint32_t>& slots,
                ErrorAt&& error_at) {
@@ -104,7 +105,7 @@ PackedMap pack_map(const NearestPairs& pairs, const LocalColorRecall* recall, co
   add_error(writer, "distance", "m", slots, [&](std::uint32_t slot) { return pairs.distance_m(slot); });
   if (pairs.from.has_color() && pairs.to.has_color()) {
     add_error(writer, "color_distance", "unit RGB", slots,
-              [&](std::uint32_t slot) { return pairs.color_distance(slot); });
+              [&](std::uint32_t slot) { return pairs.has_colors(slot) ? pairs.color_distance(slot) : 0.0; });
   }
   if (recall != nullptr) {
     writer.add("lcr", 1, Json::object(),

@@ -26,6 +26,18 @@ std::string row(std::string_view title, const Json& metric, const std::string& v
 
 std::string meters(const Json& v) { return fmt::format("{} m", v.get<double>()); }
 
+/// Reports of before left voxels of one point out and did not say how many there are.
+std::string consistency_remark(const Json& metric) {
+  const Json& parameters = metric.at("parameters");
+  const std::string voxels =
+      fmt::format("{} voxels of {}", with_thousands(metric.at("n_voxels")), meters(parameters.at("voxel_m")));
+  if (parameters.value("singletons", "exclude") == "exclude") {
+    return fmt::format("{}, >= {} points", voxels, parameters.at("min_points").get<std::uint64_t>());
+  }
+  return fmt::format("{}, {} of one point as 0; without them {}", voxels, with_thousands(metric.at("n_singletons")),
+                     digits(metric.at("exclude")));
+}
+
 /// What a reader needs beside the value: the parameters that matter, or a second number that belongs to it.
 std::string remark(const MetricInfo& info, const Json& metric) {
   const Json& parameters = metric.at("parameters");
@@ -36,7 +48,8 @@ std::string remark(const MetricInfo& info, const Json& metric) {
                        percent(metric.at("conditional")), parameters.at("tau").get<double>(),
                        meters(parameters.at("radius_m")));
   }
-  if (info.id == "color_consistency" || info.id == "average_wasserstein") {
+  if (info.id == "color_consistency") return consistency_remark(metric);
+  if (info.id == "average_wasserstein") {
     return fmt::format("{} voxels of {}, >= {} points", with_thousands(metric.at("n_voxels")),
                        meters(parameters.at("voxel_m")), parameters.at("min_points").get<std::uint64_t>());
   }
@@ -50,8 +63,10 @@ std::string remark(const MetricInfo& info, const Json& metric) {
   }
   if (info.id == "hausdorff") return fmt::format("95 %: {}", digits(metric.at("estimate_to_reference").at("p95")));
   if (info.id == "mean_map_entropy") {
-    return fmt::format("r {}, reference {}", meters(parameters.at("radius_m")),
-                       digits(metric.at("reference").at("value")));
+    const Json n_flat = metric.value("n_flat", Json(0));
+    return fmt::format("r {}, reference {}{}", meters(parameters.at("radius_m")),
+                       digits(metric.at("reference").at("value")),
+                       n_flat == 0 ? "" : fmt::format(", {} flat left out", with_thousands(n_flat)));
   }
   return "";
 }
@@ -105,9 +120,10 @@ std::string alias_lines(const std::string& prefix, const Json& value) {
   if (value.is_array() && !value.empty() && value.front().is_object()) {
     std::string lines;
     for (const Json& entry : value) {
-      const std::string at = fmt::format("{} @ {}", prefix, meters(entry.at("threshold_m")));
+      const char* threshold = entry.contains("threshold") ? "threshold" : "threshold_m";
+      const std::string at = fmt::format("{} @ {}", prefix, meters(entry.at(threshold)));
       for (const auto& [key, item] : entry.items()) {
-        if (key != "threshold_m") lines += alias_lines(fmt::format("{} {}", at, key), item);
+        if (key != threshold) lines += alias_lines(fmt::format("{} {}", at, key), item);
       }
     }
     return lines;

@@ -23,11 +23,12 @@ Array<float> most_similar_color(const Bvh& index, const Array<ColorBlock>& index
   return best;
 }
 
-NeighborhoodShape neighborhood_shapes(const Bvh& cloud, double radius_m) {
+NeighborhoodShape neighborhood_shapes(const Bvh& cloud, double radius_m, double file_step_m) {
   if (!(radius_m > 0.0)) throw std::invalid_argument("neighborhood_shapes: the radius must be positive");
-  NeighborhoodShape shape{Array<std::uint32_t>(cloud.points.size), Array<double>(cloud.points.size)};
+  const std::size_t n = cloud.points.size;
+  NeighborhoodShape shape{Array<std::uint32_t>(n), Array<double>(n), Array<std::uint8_t>(n)};
   parallel_chunks(cloud.points.blocks.size(), kQueryChunk, [&](std::size_t begin, std::size_t end) {
-    kernels().neighborhood_shapes(cloud, radius_m, begin, end, shape);
+    kernels().neighborhood_shapes(cloud, radius_m, file_step_m, begin, end, shape);
   });
   return shape;
 }

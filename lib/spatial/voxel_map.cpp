@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -27,7 +28,7 @@ VoxelFrame::VoxelFrame(const Box3d& box, double size_m) : size_m_(size_m) {
 namespace {
 
 struct Mean {
-  std::uint32_t n = 0;
+  std::uint32_t n = 0, n_colored = 0;
   Eigen::Vector3d position_sum = Eigen::Vector3d::Zero();
   Eigen::Vector3d color_sum = Eigen::Vector3d::Zero();
 };
@@ -43,7 +44,9 @@ PointCloud voxel_thinned(const PointCloud& cloud, double voxel_m) {
     mean.position_sum += cloud.positions[i].cast<double>();
     if (cloud.has_color()) {
       const RgbF color = rgb_255(cloud.colors, i);
+      if (std::isnan(color[0])) continue;
       mean.color_sum += Eigen::Vector3d(color[0], color[1], color[2]);
+      ++mean.n_colored;
     }
   }
 
@@ -53,7 +56,7 @@ PointCloud voxel_thinned(const PointCloud& cloud, double voxel_m) {
   Array<RgbF> colors;
   for (const auto& [key, mean] : means.entries()) {
     thinned.positions.push_back((mean.position_sum / mean.n).cast<float>());
-    const Eigen::Vector3f color = (mean.color_sum / (255.0 * mean.n)).cast<float>();
+    const Eigen::Vector3f color = (mean.color_sum / (255.0 * mean.n_colored)).cast<float>();
     if (cloud.has_color()) colors.push_back({color.x(), color.y(), color.z()});
   }
   if (cloud.has_color()) thinned.colors = std::move(colors);

@@ -31,6 +31,7 @@ inline const Json kTumOptions{{"metrics", {"color", "geometry", "distribution"}}
                               {"overlap-distance", 0.2},
                               {"lcr-radius", 0.05},
                               {"ccs-voxel", 0.05},
+                              {"ccs-singletons", "exclude"},
                               {"awd-voxel", 0.5},
                               {"mme-radius", 0.05},
                               {"as", {"mapeval", "open3d", "cloudcompare", "mpeg"}}};

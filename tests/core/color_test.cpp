@@ -125,6 +125,7 @@ TEST(RgbToYcbcr709, IsTheStandardToFourDecimals) {
 TEST(ToRgb8, RoundsAndStaysWithinTheRange) {
   EXPECT_EQ(to_rgb8({0.49f, 0.5f, 254.5f}), (Rgb8{0, 1, 255}));
   EXPECT_EQ(to_rgb8({-3.0f, 300.0f, 17.0f}), (Rgb8{0, 255, 17}));
+  EXPECT_EQ(to_rgb8({NAN, 1.0f, NAN}), (Rgb8{0, 1, 0})) << "no color";
 }
 
 TEST(Rgb255, EightBitIsExact) {

@@ -54,7 +54,7 @@ Json everything(const Evaluation& evaluation) {
 EvaluationOptions all_options() {
   EvaluationOptions options = options_for({"all"});
   options.lcr_curve = true;
-  options.as = {"mapeval", "open3d", "mpeg", "cloudcompare"};
+  options.as = {"color-map-evaluation", "cloudanalyzer", "mapeval", "open3d", "mpeg", "cloudcompare"};
   options.mme_radius_m = 0.3;
   options.ccs_voxel_m = 0.5;
   return options;
@@ -206,14 +206,16 @@ TEST(Evaluation, MapsAMillionMetersApart) {
   // (8, 0, 0) is nearest to all of the far map, whose own nearest is (1e6, 0, 0), its last point 5.25 m aside.
   EXPECT_NEAR(fields(found, "hausdorff").at("value"), 1e6, 1.0);
   EXPECT_NEAR(found.rmse_m, 1e6, 10.0);
-  EXPECT_EQ(fields(found, "color_consistency").at("n_voxels_below_min"), 3) << "one-cloud metrics are not rounded";
+  EXPECT_EQ(fields(found, "color_consistency").at("n_singletons"), 3) << "one-cloud metrics are not rounded";
 }
 
 TEST(Evaluation, OnePointMaps) {
   const Evaluation found = evaluate(gray_map({{0, 0, 0}}), gray_map({{0, 0, 0.5f}}), options_for({"all"}));
   EXPECT_EQ(fields(found, "chamfer").at("value"), 1.0);
   EXPECT_EQ(fields(found, "local_color_recall").at("value"), 1.0);
-  for (const char* id : {"color_consistency", "average_wasserstein", "spatial_consistency", "mean_map_entropy"}) {
+  EXPECT_EQ(fields(found, "color_consistency").at("value"), 0.0);
+  EXPECT_TRUE(fields(found, "color_consistency").at("exclude").is_null());
+  for (const char* id : {"average_wasserstein", "spatial_consistency", "mean_map_entropy"}) {
     EXPECT_TRUE(fields(found, id).at("value").is_null()) << id;
   }
 }
@@ -221,6 +223,8 @@ TEST(Evaluation, OnePointMaps) {
 TEST(Evaluation, WhatNothingQualifiesForIsNullWithAWarning) {
   EvaluationOptions options = options_for({"color_consistency", "distribution", "mme"});
   options.awd_min_points = options.ccs_min_points = 1000;
+  options.ccs_voxel_m = 5.0;
+  options.ccs_singletons = Singletons::kExclude;
   const Evaluation found = evaluate(painted_sheet(900, 1), painted_sheet(900, 2), options);
   for (const MetricRecord& record : found.metrics) EXPECT_TRUE(record.fields.at("value").is_null()) << record.info->id;
   EXPECT_THAT(warning_ids(found.warnings), ElementsAre("color_consistency_no_voxels", "average_wasserstein_no_voxels",
@@ -265,6 +269,197 @@ TEST(Evaluation, OtherToolsAreAddedByName) {
   const Evaluation bare = evaluate(small_map({{0, 0, 0}}), kEstimate, options);
   EXPECT_TRUE(bare.aliases.at("mpeg").is_null());
   EXPECT_THAT(warning_ids(bare.warnings), Contains("mpeg_needs_color"));
+}
+
+/// Two voxels of trace 0.02, as in the example of the authors' tool, and a lone point.
+const std::vector<Eigen::Vector3f> kSpots{{0.01f, 0, 0}, {0.02f, 0, 0}, {1.01f, 0, 0}, {1.02f, 0, 0}, {5, 5, 5}};
+const std::vector<Rgb8> kSpotColors{{0, 0, 0}, {51, 0, 0}, {0, 102, 0}, {0, 153, 0}, {9, 9, 9}};
+const PointCloud kSpotMap = small_map(kSpots, kSpotColors);
+
+TEST(Evaluation, ConsistencyHasItsValueUnderBothRules) {
+  EvaluationOptions options = options_for({"CCS"});
+  const std::tuple<Singletons, double, int> cases[] = {{Singletons::kZero, 0.02 * 2 / 3, 3},
+                                                       {Singletons::kExclude, 0.02, 2}};
+  for (const auto& [singletons, value, n] : cases) {
+    options.ccs_singletons = singletons;
+    const Evaluation found = evaluate(kSpotMap, kSpotMap, options);
+    const Json record = fields(found, "color_consistency");
+    for (const Json& numbers : {record, record.at("reference")}) {
+      EXPECT_DOUBLE_EQ(numbers.at("value").get<double>(), value);
+      EXPECT_DOUBLE_EQ(numbers.at("value_x100").get<double>(), 100 * value);
+      EXPECT_DOUBLE_EQ(numbers.at("zero").get<double>(), 0.02 * 2 / 3);
+      EXPECT_DOUBLE_EQ(numbers.at("exclude").get<double>(), 0.02);
+      EXPECT_DOUBLE_EQ(numbers.at("median").get<double>(), 0.02);
+      EXPECT_EQ(numbers.at("n_voxels"), n);
+      EXPECT_EQ(numbers.at("n_occupied"), 3);
+      EXPECT_EQ(numbers.at("n_singletons"), 1);
+    }
+    EXPECT_EQ(record.at("parameters"),
+              Json({{"voxel_m", 0.1}, {"singletons", singletons_name(singletons)}, {"min_points", 2}}));
+    EXPECT_EQ(warning_ids(found.warnings), kNone) << "a third of single points is no more than half";
+  }
+}
+
+TEST(Evaluation, SingletonsCanBeRefused) {
+  EvaluationOptions options = options_for({"CCS"});
+  options.ccs_singletons = Singletons::kRefuse;
+  EXPECT_THAT(refusal_of<UnsupportedError>([&] { evaluate(kSpotMap, kSpotMap, options); }),
+              HasSubstr("ccs-singletons: 1 of the estimate's 3 voxels of 0.1 m hold a single point"));
+  const PointCloud whole = small_map({kSpots.begin(), kSpots.end() - 1}, {kSpotColors.begin(), kSpotColors.end() - 1});
+  const Evaluation found = evaluate(kSpotMap, whole, options);
+  EXPECT_DOUBLE_EQ(fields(found, "color_consistency").at("value").get<double>(), 0.02);
+}
+
+TEST(Evaluation, AMapOfOnePointAVoxelIsWarnedOf) {
+  const std::vector<Eigen::Vector3f> apart{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {3.01f, 0, 0}};
+  const PointCloud map = gray_map(apart);
+  const Evaluation found = evaluate(map, map, options_for({"CCS"}));
+  ASSERT_THAT(warning_ids(found.warnings), ElementsAre("color_consistency_sparse"));
+  EXPECT_THAT(found.warnings[0].message, HasSubstr("3 of the estimate's 4 voxels of 0.1 m"));
+  // The same points three times each.
+  std::vector<Eigen::Vector3f> copies = apart;
+  for (int copy = 1; copy < 3; ++copy) copies.insert(copies.end(), apart.begin(), apart.end());
+  const Evaluation copied = evaluate(map, gray_map(copies), options_for({"CCS"}));
+  EXPECT_EQ(fields(copied, "color_consistency").at("n_singletons"), 0);
+  ASSERT_THAT(warning_ids(copied.warnings), ElementsAre("color_consistency_sparse"));
+  EXPECT_THAT(copied.warnings[0].message, HasSubstr("3 of the estimate's 4 voxels of 0.1 m"));
+}
+
+/// Voxel centers a tenth of a meter apart, as typed; every option that is a threshold at a tenth.
+TEST(Evaluation, ThresholdsMeanWhatWasTyped) {
+  PointCloud reference, estimate;
+  for (int i = 0; i < 12; ++i) {
+    reference.positions.push_back(Eigen::Vector3d(i, 3.0, 0.1).cast<float>());
+    estimate.positions.push_back(Eigen::Vector3d(i, 3.0, 0.2).cast<float>());
+  }
+  reference.colors = estimate.colors = Array<Rgb8>(12, Rgb8{1, 2, 3});
+  EvaluationOptions options = options_for({"all"});
+  options.thresholds_m = {0.1, 0.099};
+  options.overlap_distance_m = options.lcr_radius_m = 0.1;
+  options.color_max_distance_m = 0.1;
+  options.bootstrap = 5;
+  options.as = {"open3d", "cloudanalyzer"};
+  const Evaluation found = evaluate(reference, estimate, options);
+  for (const char* id : {"fitness", "completeness", "f_score"}) {
+    const Json record = fields(found, id);
+    EXPECT_EQ(record.at("per_threshold")[0].at("value"), 1.0) << id;
+    EXPECT_EQ(record.at("per_threshold")[1].at("value"), 0.0) << id;
+    EXPECT_EQ(found.intervals.at("metrics").at(id).at("per_threshold")[0].at("lower"), 1.0) << id;
+  }
+  EXPECT_NEAR(fields(found, "accuracy").at("per_threshold")[0].at("value").get<double>(), 0.1, 1e-8);
+  EXPECT_EQ(found.overlap, 1.0);
+  EXPECT_EQ(fields(found, "local_color_recall").at("value"), 1.0);
+  EXPECT_EQ(fields(found, "color_distance").at("n_unmatched_estimate"), 0);
+  EXPECT_EQ(fields(found, "delta_e").at("estimate_to_reference").at("n"), 12);
+  EXPECT_EQ(fields(found, "color_distance_exposure_free").at("n_pairs"), 12);
+  EXPECT_EQ(found.aliases.at("open3d").at("per_threshold")[0].at("fitness"), 0.0) << "other tools compare as they do";
+  EXPECT_EQ(found.aliases.at("cloudanalyzer").at("map-evaluate").at("accuracy@0.100m"), 0.0);
+}
+
+/// One of two estimated points and one of three reference points have no color: by hand.
+TEST(Evaluation, PointsWithoutColorCountForGeometryOnly) {
+  const RgbF none{NAN, NAN, NAN};
+  PointCloud reference = small_map({{0, 0.25f, 0}, {1, 0.25f, 0}, {2, 0.25f, 0}});
+  PointCloud estimate = small_map({{0, 0, 0}, {1, 0, 0}});
+  reference.colors = Array<RgbF>{{0.25f, 0, 0}, {1, 1, 1}, none};
+  estimate.colors = Array<RgbF>{{0, 0, 0}, none};
+  EvaluationOptions options = options_for({"all"});
+  options.bootstrap = 5;
+  options.as = {"mpeg", "color-map-evaluation", "cloudanalyzer"};
+  const Evaluation found = evaluate(reference, estimate, options);
+  EXPECT_EQ(fields(found, "chamfer").at("n_reference"), 3);
+  const Json cd = fields(found, "color_distance");
+  EXPECT_EQ(cd.at("value"), 0.25);
+  EXPECT_EQ(cd.at("n_estimate"), 1);
+  EXPECT_EQ(cd.at("n_unmatched_reference"), 2);
+  EXPECT_EQ(cd.at("n_without_color_estimate"), 1);
+  EXPECT_EQ(cd.at("n_without_color_reference"), 1);
+  const Json lcr = fields(found, "local_color_recall");
+  EXPECT_EQ(lcr.at("n_reference"), 2);
+  EXPECT_EQ(lcr.at("coverage"), 1.0) << "what covers needs no color";
+  EXPECT_EQ(lcr.at("value"), 0.5);
+  EXPECT_EQ(fields(found, "color_consistency").at("n_occupied"), 1);
+  EXPECT_EQ(fields(found, "color_consistency").at("n_without_color"), 1);
+  EXPECT_EQ(fields(found, "color_consistency").at("reference").at("n_occupied"), 2);
+  EXPECT_EQ(fields(found, "delta_e").at("reference_to_estimate").at("n"), 1);
+  EXPECT_NEAR(fields(found, "color_psnr").at("value").get<double>(), -20 * std::log10(0.2126 * 0.25), 1e-12);
+  EXPECT_EQ(fields(found, "color_distance_by_range").at("per_range")[3].at("n_reference"), 1);
+  EXPECT_TRUE(found.aliases.at("mpeg").is_null());
+  EXPECT_TRUE(found.aliases.at("color-map-evaluation").is_null());
+  EXPECT_TRUE(found.aliases.at("cloudanalyzer").is_object());
+  const Json& sums = found.intervals.at("blocks").at("sums");
+  EXPECT_EQ(sums.at("reference.colored"), Json({2.0}));
+  EXPECT_EQ(sums.at("estimate.luma_n"), Json({1.0}));
+}
+
+TEST(Evaluation, ColorsThatNoPointHasAreNone) {
+  PointCloud bare = small_map({{0, 0, 0}, {1, 0, 0}});
+  bare.colors = Array<RgbF>(2, RgbF{NAN, NAN, NAN});
+  const Evaluation found = evaluate(kReference, bare, EvaluationOptions{});
+  EXPECT_THAT(warning_ids(found.warnings), Contains("no_color"));
+  EXPECT_TRUE(fields(found, "color_distance").at("value").is_null());
+  EXPECT_THROW(evaluate(kReference, bare, options_for({"color"})), UnsupportedError);
+}
+
+TEST(Evaluation, AFlatMapHasNoEntropyAndSaysWhy) {
+  PointCloud plane;
+  for (int i = 0; i < 100; ++i) {
+    plane.positions.push_back({0.1f * static_cast<float>(i % 10), 0.1f * static_cast<float>(i / 10), 1});
+  }
+  EvaluationOptions options = options_for({"mme"});
+  options.mme_radius_m = 0.35;
+  const Evaluation found = evaluate(plane, plane, options);
+  EXPECT_TRUE(fields(found, "mean_map_entropy").at("value").is_null());
+  EXPECT_EQ(fields(found, "mean_map_entropy").at("n_flat"), 100);
+  ASSERT_THAT(warning_ids(found.warnings), ElementsAre("mean_map_entropy_flat"));
+  EXPECT_THAT(found.warnings[0].message, HasSubstr("flat to the rounding"));
+}
+
+/// Another tool's record is made at its own defaults, whatever the options say.
+TEST(Evaluation, TheAuthorsToolAtItsDefaults) {
+  const PointCloud four = small_map({kSpots.begin(), kSpots.end() - 1}, {kSpotColors.begin(), kSpotColors.end() - 1});
+  std::vector<Eigen::Vector3f> places(kSpots.begin(), kSpots.end() - 1);
+  std::vector<Rgb8> colors(kSpotColors.begin(), kSpotColors.end() - 1);
+  places.push_back({10, 0, 0});
+  colors.push_back({0, 0, 255});
+  EvaluationOptions options = options_for({"chamfer"});
+  options.as = {"color-map-evaluation"};
+  options.lcr_tau = 9.0;
+  options.lcr_radius_m = 99.0;
+  options.ccs_voxel_m = 7.0;
+  options.color_max_distance_m = 0.5;
+  const Evaluation found = evaluate(small_map(places, colors), four, options);
+  const Json record = found.aliases.at("color-map-evaluation");
+  EXPECT_NEAR(record.at("CD").get<double>(), std::sqrt(1.36) / 10, 1e-15);
+  EXPECT_NEAR(record.at("CD_rgb255").get<double>(), 25.5 * std::sqrt(1.36), 1e-12);
+  EXPECT_NEAR(record.at("CF_dB").get<double>(), 18.66, 0.005);
+  EXPECT_EQ(record.at("LCR"), 0.8);
+  EXPECT_EQ(record.at("LCR_percent"), 80.0);
+  EXPECT_NEAR(record.at("CCS").get<double>(), 0.02, 1e-15);
+  EXPECT_EQ(evaluate(four, four, options).aliases.at("color-map-evaluation").at("CF_dB"), "+inf");
+}
+
+/// Distances 0.25 and 3 one way; 0.25, 3 and 5 the other. Only the thresholds 0.3, 0.5 and 1 m see any: P 1/2, R 1/3.
+TEST(Evaluation, CloudAnalyzerAtItsDefaults) {
+  EvaluationOptions options = options_for({"chamfer"});
+  options.as = {"cloudanalyzer"};
+  options.thresholds_m = {7.0};
+  const Evaluation evaluation = evaluate(kReference, kEstimate, options);
+  const Json found = evaluation.aliases.at("cloudanalyzer");
+  const Json one = found.at("evaluate"), two = found.at("map-evaluate");
+  EXPECT_DOUBLE_EQ(one.at("chamfer_distance").get<double>(), (3.25 / 2 + 8.25 / 3) / 2);
+  EXPECT_DOUBLE_EQ(two.at("chamfer_m").get<double>(), 3.25 / 2 + 8.25 / 3);
+  EXPECT_EQ(one.at("hausdorff_distance"), 5.0);
+  EXPECT_EQ(one.at("f1_scores")[2].at("f1"), 0.0);
+  EXPECT_DOUBLE_EQ(one.at("f1_scores")[3].at("f1").get<double>(), 0.4);
+  EXPECT_DOUBLE_EQ(one.at("auc").get<double>(), (0.1 * 0.2 + 0.7 * 0.4) / 0.95);
+  const Json back = one.at("distance_stats").at("target_to_source");
+  EXPECT_DOUBLE_EQ(back.at("median").get<double>(), 3.0);
+  EXPECT_DOUBLE_EQ(back.at("std").get<double>(), std::sqrt((0.0625 + 9 + 25) / 3 - 2.75 * 2.75));
+  EXPECT_EQ(two.at("accuracy@0.200m"), 0.0);
+  EXPECT_EQ(two.at("fscore@0.200m"), 0.0);
+  EXPECT_EQ(two.at("n_awd_voxels"), 0);
+  EXPECT_FALSE(two.contains("awd_m"));
 }
 
 TEST(Evaluation, BrokenMapsAreInputErrors) {

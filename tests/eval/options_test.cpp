@@ -40,6 +40,7 @@ const Setting kSettings[] = {
     {"lcr-radius", "0.25", "0.25"},
     {"lcr-curve", "true", "true"},
     {"ccs-voxel", "0.3", "0.3"},
+    {"ccs-singletons", "exclude", R"("exclude")"},
     {"ccs-min-points", "5", "5"},
     {"awd-voxel", "1.5", "1.5"},
     {"awd-min-points", "50", "50"},
@@ -96,8 +97,8 @@ TEST(Options, DefaultsAreThoseOfTheDefinitions) {
   const Json defaults = to_json(EvaluationOptions{});
   const Json expected = parsed(R"({
     "thresholds": [0.2, 0.1, 0.08, 0.05, 0.01], "overlap-distance": 1.0, "lcr-tau": 0.1, "lcr-radius": 0.5,
-    "lcr-curve": false, "ccs-voxel": 0.2, "ccs-min-points": 2, "awd-voxel": 3.0, "awd-min-points": 100,
-    "scs-radius": 5, "mme-radius": 0.1, "mme-min-neighbors": 10, "color-max-distance": null, "voxel": null,
+    "lcr-curve": false, "ccs-voxel": 0.1, "ccs-singletons": "zero", "ccs-min-points": 2,
+    "awd-voxel": 3.0, "awd-min-points": 100, "scs-radius": 5, "mme-radius": 0.1, "mme-min-neighbors": 10, "color-max-distance": null, "voxel": null,
     "crop": null, "as": [], "bootstrap": 0, "block": 10.0, "observed": "none", "observed-range": 100.0, "observed-voxel": 0.5,
     "align": "none", "align-voxel": null, "align-distance": null, "align-scale": false, "trajectory-fit": "sim3",
     "tanksandtemples-tau": null, "sensitivity": false, "sensitivity-translation": 0.01, "sensitivity-rotation": 0.1, "index": "bvh"})");
@@ -175,6 +176,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"lcr-radius", "null", "null is not a number"}, Refused{"lcr-radius", "-0.5", "-0.5 must be above 0"},
         Refused{"lcr-curve", "1", "1 is neither true nor false"}, Refused{"ccs-voxel", "0.0", "must be above 0"},
         Refused{"ccs-min-points", "1", "1 is not a whole number from 2 to"},
+        Refused{"ccs-singletons", R"("leave")", R"("leave" is none of zero, exclude, refuse)"},
         Refused{"ccs-min-points", "2.5", "2.5 is not a whole number"},
         Refused{"awd-voxel", "[3]", "[3] is not a number"}, Refused{"awd-min-points", "-5", "-5 is not a whole number"},
         Refused{"awd-min-points", "10000000000", "is not a whole number from 2 to 1000000000"},
@@ -184,7 +186,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"color-max-distance", "-1", "-1 must be above 0"}, Refused{"voxel", "0", "0 must be above 0"},
         Refused{"crop", "[0, 0, 0]", "is not xmin,ymin,zmin,xmax,ymax,zmax"},
         Refused{"crop", "[0, 0, 0, 1, -1, 1]", "has a maximum below its minimum"},
-        Refused{"as", R"(["cloud_compare"])", R"("cloud_compare" is unknown; tools are mapeval, open3d, mpeg)"},
+        Refused{"as", R"(["cloud_compare"])", R"("cloud_compare" is unknown; tools are color-map-evaluation, clo)"},
         Refused{"as", R"("open3d")", "is not a list of words"},
         Refused{"index", R"("kdtree")", R"("kdtree" is neither bvh nor flann)"}));
 
@@ -290,7 +292,8 @@ INSTANTIATE_TEST_SUITE_P(
         PresetCase{"paper", "{}"}, PresetCase{"mapeval", "{}"},
         PresetCase{"indoor", R"({"thresholds": [0.1, 0.05, 0.02, 0.01, 0.005], "awd-voxel": 0.5, "lcr-radius": 0.05,
                                  "ccs-voxel": 0.05})"},
-        PresetCase{"outdoor", R"({"thresholds": [0.5, 0.3, 0.2, 0.1, 0.05], "awd-voxel": 2.0, "lcr-radius": 0.25})"},
+        PresetCase{"outdoor", R"({"thresholds": [0.5, 0.3, 0.2, 0.1, 0.05], "awd-voxel": 2.0, "lcr-radius": 0.25,
+                                  "ccs-voxel": 0.2})"},
         PresetCase{"aerial", R"({"thresholds": [1.0, 0.5, 0.3, 0.2, 0.1], "awd-voxel": 4.0, "lcr-radius": 0.5,
                                  "ccs-voxel": 0.5})"}));
 
@@ -303,6 +306,7 @@ TEST(Preset, PaperRestatesEveryDefaultThatItNames) {
   options.thresholds_m = {1.0};
   options.overlap_distance_m = options.lcr_tau = options.lcr_radius_m = options.ccs_voxel_m = options.awd_voxel_m = 9.0;
   options.ccs_min_points = options.awd_min_points = options.scs_radius_voxels = 9;
+  options.ccs_singletons = Singletons::kRefuse;
   apply_preset(options, "paper");
   EXPECT_EQ(to_json(options), to_json(EvaluationOptions{})) << "it resets whatever was set before";
 }

@@ -40,9 +40,11 @@ double by_definition(const PointCloud& cloud, double voxel_m, std::size_t min_po
 }
 
 void expect_same(const ColorConsistency& found, const ColorConsistency& expected) {
-  EXPECT_EQ(found.n_voxels, expected.n_voxels);
-  EXPECT_EQ(found.n_voxels_below_min, expected.n_voxels_below_min);
-  EXPECT_NEAR_RELATIVE(found.mean, expected.mean, test::kSummation);
+  EXPECT_EQ(found.n_enough, expected.n_enough);
+  EXPECT_EQ(found.n_occupied, expected.n_occupied);
+  EXPECT_EQ(found.n_singletons, expected.n_singletons);
+  EXPECT_NEAR_RELATIVE(found.zero, expected.zero, test::kSummation);
+  EXPECT_NEAR_RELATIVE(found.exclude, expected.exclude, test::kSummation);
   EXPECT_NEAR_RELATIVE(found.median, expected.median, test::kSummation);
 }
 
@@ -53,10 +55,10 @@ TEST(ColorConsistency, HalfBlackHalfWhite) {
     std::fill(colors.begin() + static_cast<long>(n / 2), colors.end(), kWhite);
     cloud.colors = colors;
     const ColorConsistency found = consistency(cloud, 1.0);
-    EXPECT_EQ(found.n_voxels, 1U);
+    EXPECT_EQ(found.n_occupied, 1U);
     const auto count = static_cast<double>(n);
-    EXPECT_DOUBLE_EQ(found.mean, 3.0 * count / (4.0 * (count - 1.0)));
-    EXPECT_EQ(found.median, found.mean);
+    EXPECT_DOUBLE_EQ(found.exclude, 3.0 * count / (4.0 * (count - 1.0)));
+    EXPECT_EQ(found.median, found.exclude);
   }
 }
 
@@ -66,59 +68,122 @@ TEST(ColorConsistency, HandComputedOverThreeVoxels) {
       test::cloud_of({{0.1f, 0, 0}, {0.2f, 0, 0}, {1.1f, 0, 0}, {1.2f, 0, 0}, {2.1f, 0, 0}, {2.2f, 0, 0}, {9, 9, 9}},
                      {kBlack, kWhite, {7, 8, 9}, {7, 8, 9}, {0, 3, 3}, {51, 3, 3}, kWhite});
   const ColorConsistency found = consistency(cloud, 1.0);
-  EXPECT_EQ(found.n_voxels, 3U);
-  EXPECT_EQ(found.n_voxels_below_min, 1U);
-  EXPECT_DOUBLE_EQ(found.mean, 1.52 / 3.0);
+  EXPECT_EQ(found.n_occupied, 4U);
+  EXPECT_EQ(found.n_enough, 3U);
+  EXPECT_EQ(found.n_singletons, 1U);
+  EXPECT_DOUBLE_EQ(found.zero, 1.52 / 4.0);
+  EXPECT_DOUBLE_EQ(found.exclude, 1.52 / 3.0);
   EXPECT_DOUBLE_EQ(found.median, 0.02);
+  EXPECT_EQ(found.value(Singletons::kZero), found.zero);
+  EXPECT_EQ(found.value(Singletons::kExclude), found.exclude);
+  EXPECT_EQ(found.n_voxels(Singletons::kZero), 4U);
+  EXPECT_EQ(found.n_voxels(Singletons::kExclude), 3U);
+}
+
+/// The example of the authors' tool: two voxels of trace 0.02; a lone point makes them two of three.
+TEST(ColorConsistency, TheAuthorsExample) {
+  const std::vector<Eigen::Vector3f> positions{{0.01f, 0, 0}, {0.02f, 0, 0}, {1.01f, 0, 0}, {1.02f, 0, 0}};
+  const std::vector<Rgb8> colors{kBlack, {51, 0, 0}, {0, 102, 0}, {0, 153, 0}};
+  const PointCloud two = test::cloud_of(positions, colors);
+  EXPECT_DOUBLE_EQ(consistency(two, 0.1).zero, 0.02);
+  EXPECT_EQ(consistency(two, 0.1).n_singletons, 0U);
+  const PointCloud lone = test::appended(two, test::cloud_of({{5, 5, 5}}, {kWhite}));
+  EXPECT_DOUBLE_EQ(consistency(lone, 0.1).zero, 0.02 * 2.0 / 3.0);
+  EXPECT_DOUBLE_EQ(consistency(lone, 0.1).exclude, 0.02);
+}
+
+TEST(ColorConsistency, OnePointAVoxelIsPerfectAndHasNoMedian) {
+  const ColorConsistency found = consistency(test::cloud_of({{0, 0, 0}, {5, 0, 0}}, {kBlack, kWhite}), 1.0);
+  EXPECT_EQ(found.zero, 0.0);
+  EXPECT_TRUE(std::isnan(found.exclude));
+  EXPECT_TRUE(std::isnan(found.median));
+  EXPECT_EQ(found.n_singletons, 2U);
+}
+
+TEST(ColorConsistency, CopiesOfAPointAreAtOnePlace) {
+  // Three copies; two copies of other colors; two places; a single point.
+  const PointCloud cloud = test::cloud_of(
+      {{0.5f, 0, 0}, {0.5f, 0, 0}, {0.5f, 0, 0}, {3, 0, 0}, {3, 0, 0}, {6.25f, 0, 0}, {6.5f, 0, 0}, {9, 0, 0}},
+      {kBlack, kBlack, kBlack, kBlack, kWhite, kBlack, kBlack, kBlack});
+  const ColorConsistency found = consistency(cloud, 1.0);
+  EXPECT_EQ(found.n_occupied, 4U);
+  EXPECT_EQ(found.n_singletons, 1U);
+  EXPECT_EQ(found.n_one_place, 2U);
+}
+
+TEST(ColorConsistency, PointsWithoutColorOccupyNothing) {
+  PointCloud cloud = test::cloud_of({{0.1f, 0, 0}, {0.2f, 0, 0}, {0.3f, 0, 0}, {5, 0, 0}});
+  cloud.colors = Array<RgbF>{{0, 0, 0}, {1, 0, 0}, {NAN, NAN, NAN}, {NAN, NAN, NAN}};
+  const ColorConsistency found = consistency(cloud, 1.0);
+  EXPECT_EQ(found.n_occupied, 1U);
+  EXPECT_EQ(found.zero, 0.5);
+  EXPECT_EQ(found.exclude, 0.5);
+}
+
+TEST(ColorConsistency, SpreadsAreThoseOfTheMean) {
+  const IndexedMap map(sheet());
+  for (Singletons singletons : {Singletons::kZero, Singletons::kExclude}) {
+    const ColorConsistency found = color_consistency(map, 0.5, 3);
+    const std::vector<VoxelColorSpread> spreads = voxel_color_spreads(map, 0.5, 3, singletons);
+    EXPECT_EQ(spreads.size(), found.n_voxels(singletons));
+    double sum = 0.0;
+    for (const VoxelColorSpread& voxel : spreads) sum += voxel.trace;
+    EXPECT_NEAR_RELATIVE(sum / static_cast<double>(spreads.size()), found.value(singletons), test::kSummation);
+  }
 }
 
 TEST(ColorConsistency, VoxelsAreAnchoredAtTheWorldsOriginAndHoldTheirLowerBorder) {
   // -0.1 and 0.1 are apart, 1.0 belongs to the upper voxel.
   const std::vector<Eigen::Vector3f> positions{{-0.1f, 0, 0}, {0.1f, 0, 0}, {1.0f, 0, 0}, {1.9f, 0, 0}};
   PointCloud cloud = test::cloud_of(positions, {kBlack, kWhite, kBlack, kWhite});
-  EXPECT_EQ(consistency(cloud, 1.0).n_voxels, 1U);
-  EXPECT_EQ(consistency(cloud, 1.0).n_voxels_below_min, 2U);
+  EXPECT_EQ(consistency(cloud, 1.0).n_enough, 1U);
+  EXPECT_EQ(consistency(cloud, 1.0).n_singletons, 2U);
   // The same points from another origin: the world counts, not the offsets.
   for (Eigen::Vector3f& p : cloud.positions) p.x() += 0.5f;
   cloud.origin.x() = -0.5;
-  EXPECT_EQ(consistency(cloud, 1.0).n_voxels_below_min, 2U);
+  EXPECT_EQ(consistency(cloud, 1.0).n_singletons, 2U);
 }
 
 TEST(ColorConsistency, MinPointsLeavesThinVoxelsOut) {
   const PointCloud cloud = sheet();
   ColorConsistency before = consistency(cloud, 0.5, 2);
-  const std::uint64_t all = before.n_voxels + before.n_voxels_below_min;
   for (std::uint64_t min_points : {3, 4, 6}) {
     const ColorConsistency after = consistency(cloud, 0.5, min_points);
-    EXPECT_LT(after.n_voxels, before.n_voxels);
-    EXPECT_EQ(after.n_voxels + after.n_voxels_below_min, all);
-    EXPECT_NEAR_RELATIVE(after.mean, by_definition(cloud, 0.5, min_points), test::kSummation);
+    EXPECT_LT(after.n_enough, before.n_enough);
+    EXPECT_EQ(after.n_occupied, before.n_occupied);
+    EXPECT_EQ(after.zero, before.zero) << "which has no least number";
+    EXPECT_NEAR_RELATIVE(after.exclude, by_definition(cloud, 0.5, min_points), test::kSummation);
     before = after;
   }
 }
 
 TEST(ColorConsistency, NoVoxelIsMissing) {
   const ColorConsistency none = consistency(sheet(), 100.0, 5000);
-  EXPECT_EQ(none.n_voxels, 0U);
-  EXPECT_TRUE(std::isnan(none.mean));
-  EXPECT_TRUE(std::isnan(none.median));
+  EXPECT_EQ(none.n_enough, 0U);
+  EXPECT_TRUE(std::isnan(none.exclude));
+  EXPECT_FALSE(std::isnan(none.zero));
 }
 
 TEST(ColorConsistency, EqualsTheDefinition) {
   for (double voxel_m : {0.2, 0.25, 0.7, 4.0, 300.0}) {
     SCOPED_TRACE(voxel_m);
-    EXPECT_NEAR_RELATIVE(consistency(sheet(), voxel_m).mean, by_definition(sheet(), voxel_m, 2), test::kSummation);
+    const ColorConsistency found = consistency(sheet(), voxel_m);
+    EXPECT_NEAR_RELATIVE(found.exclude, by_definition(sheet(), voxel_m, 2), test::kSummation);
+    // The other mean differs by its number of voxels alone.
+    const double share = static_cast<double>(found.n_enough) / static_cast<double>(found.n_occupied);
+    EXPECT_NEAR_RELATIVE(found.zero, share * found.exclude, test::kSummation);
+    EXPECT_EQ(found.n_occupied, found.n_enough + found.n_singletons);
   }
 }
 
 TEST(ColorConsistency, OneColorIsPerfectlyConsistent) {
   PointCloud cloud = test::sheet_cloud(2000, 1);
   cloud.colors = Array<Rgb8>(2000, Rgb8{255, 253, 251});
-  EXPECT_EQ(consistency(cloud, 2.0).mean, 0.0);
+  EXPECT_EQ(consistency(cloud, 2.0).exclude, 0.0);
   cloud.colors = Array<RgbF>(2000, RgbF{0.1f, 0.7f, 0.3f});
   // Sums of squares below 1e5 a point are rounded; never below 0.
-  EXPECT_GE(consistency(cloud, 2.0).mean, 0.0);
-  EXPECT_LT(consistency(cloud, 2.0).mean, 1e-14);
+  EXPECT_GE(consistency(cloud, 2.0).exclude, 0.0);
+  EXPECT_LT(consistency(cloud, 2.0).exclude, 1e-14);
 }
 
 TEST(ColorConsistency, DoesNotChangeWithAColorShift) {
@@ -145,7 +210,7 @@ TEST(ColorConsistency, IsInvariantUnderShiftsByWholeVoxels) {
     expect_same(consistency(cloud, voxel_m), expected);
     expect_same(consistency(transformed(sheet(), test::translation({-1e6, 1e6, 4.0})), voxel_m), expected);
     cloud.origin = {0.3 * voxel_m, 0, 0};  // not whole: other voxels
-    EXPECT_NE(consistency(cloud, voxel_m).mean, expected.mean);
+    EXPECT_NE(consistency(cloud, voxel_m).exclude, expected.exclude);
   }
 }
 

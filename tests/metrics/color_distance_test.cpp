@@ -45,6 +45,30 @@ TEST(ColorDistance, EqualsTheDefinition) {
   EXPECT_NEAR_RELATIVE(cd.reference_to_estimate.mean, directed(clouds.reference, clouds.estimate), test::kSummation);
 }
 
+/// Pairs without both colors are left out, and everything else stays as it was.
+TEST(ColorDistance, PointsWithoutColorAreLeftOut) {
+  const float nan = NAN;
+  test::Clouds clouds{test::cloud_of({{0, 0, 0}, {10, 0, 0}, {20, 0, 0}}),
+                      test::cloud_of({{0.25f, 0, 0}, {10.25f, 0, 0}, {20.25f, 0, 0}})};
+  clouds.reference.colors = Array<RgbF>{{0, 0, 0}, {nan, nan, nan}, {0.5f, 0.25f, 1}};
+  clouds.estimate.colors = Array<RgbF>{{0.5f, 0, 0}, {0, 0, 0}, {nan, nan, nan}};
+  const MapPair pair = clouds.pair();
+  EXPECT_EQ(pair.reference.n_without_color, 1U);
+  const ColorDistance cd = color_distance(pair);
+  for (const DirectedColorDistance& direction : {cd.estimate_to_reference, cd.reference_to_estimate}) {
+    EXPECT_EQ(direction.mean, 0.5);
+    EXPECT_EQ(direction.n, 1U);
+    EXPECT_EQ(direction.n_unmatched, 2U);
+  }
+  EXPECT_NEAR(color_psnr(pair).psnr_db().x(), -20.0 * std::log10(0.2126 * 0.5), 1e-12);
+  EXPECT_EQ(delta_e(pair.estimate_to_reference(), 1.0).n, 1U);
+  EXPECT_TRUE(std::isfinite(delta_e(pair.estimate_to_reference(), 1.0).p95));
+  EXPECT_EQ(exposure_gains(pair, 1.0).n_pairs, 1U);
+  clouds.estimate.colors = Array<RgbF>{{nan, nan, nan}, {0, 0, 0}, {nan, nan, nan}};
+  EXPECT_TRUE(std::isnan(value(clouds)));
+  EXPECT_TRUE(std::isnan(color_psnr(clouds.pair()).psnr_db().x()));
+}
+
 TEST(ColorDistance, OfAMapAndItselfIsZero) {
   for (const PointCloud& cloud : {test::two_sheets().reference, test::painted_triplicates(300)}) {
     EXPECT_EQ(value({cloud, cloud}), 0.0);

@@ -11,6 +11,8 @@ using Doubles = std::vector<double>;
 
 const Doubles kThresholds_m{0.2, 0.1, 0.08, 0.05, 0.01};
 
+double sq(double v) { return v * v; }
+
 DistanceStats stats_of(const Array<double>& sq_dist, const Doubles& thresholds_m = kThresholds_m,
                        double truncation_m = 1.0) {
   return distance_stats(sq_dist, thresholds_m, truncation_m);
@@ -65,6 +67,55 @@ TEST(DistanceStats, ThresholdsAreComparedWithTheDistanceNotItsSquare) {
   const double sq = 0.1 * 0.1;
   EXPECT_EQ(stats_of({sq}, {0.1}).within[0].n, 1U);
   EXPECT_EQ(stats_of({std::nextafter(0.01, 1.0) * 1.0001}, {0.1}).within[0].n, 0U);
+}
+
+/// A distance above a threshold by no more than its own rounding counts as at it; the others' is not asked for.
+TEST(DistanceStats, RoundingBelongsToTheThreshold) {
+  const Array<double> sq_dist{sq(0.1), sq(0.1 + 3e-7), sq(0.1 + 3e-7), sq(0.1 + 3e-6), sq(0.2 + 1e-7), sq(0.3)};
+  const std::array<double, 6> rounding{0, 4e-7, 2e-7, 4e-7, 2e-7, 1};
+  std::vector<std::size_t> asked;
+  const auto of_pair = [&](std::size_t i) {
+    asked.push_back(i);
+    return rounding[i];
+  };
+  const DistanceStats stats = distance_stats(sq_dist, Doubles{0.2, 0.1}, 1.0, {4e-7, of_pair});
+  EXPECT_EQ(stats.within[0].n, 5U);
+  EXPECT_EQ(stats.within[1].n, 2U);
+  EXPECT_DOUBLE_EQ(stats.within[1].rmse_m, std::sqrt((sq(0.1) + sq(0.1 + 3e-7)) / 2));
+  EXPECT_NEAR(stats.within[1].median_m, 0.1 + 1.5e-7, 1e-12);
+  EXPECT_EQ(asked, (std::vector<std::size_t>{1, 2, 4}));
+}
+
+TEST(DistanceStats, VoxelCentersATenthApartAreWithinATenth) {
+  for (double far : {0.0, 100.0, -3000.0}) {
+    test::Clouds clouds;
+    for (int i = 0; i < 50; ++i) {
+      clouds.reference.positions.push_back(Eigen::Vector3d(far + i, -i, 0.1).cast<float>());
+      clouds.estimate.positions.push_back(Eigen::Vector3d(far + i, -i, 0.2).cast<float>());
+    }
+    clouds.estimate.positions.push_back(Eigen::Vector3d(far, 0.0, 0.2 + 0.003).cast<float>());
+    const MapPair pair = clouds.pair();
+    const NearestPairs pairs = pair.estimate_to_reference();
+    const DistanceStats stats =
+        distance_stats(pairs.nearest.sq_dist, Doubles{0.1, 0.099}, 1.0,
+                       {pairs.most_rounding_m(), [&](std::size_t slot) { return pairs.rounding_m(slot); }});
+    EXPECT_EQ(stats.within[0].n, 50U);
+    EXPECT_EQ(stats.within[1].n, 0U);
+    std::size_t n_within = 0;
+    for (std::size_t slot = 0; slot < pairs.size(); ++slot) n_within += pairs.is_within(slot, 0.1) ? 1 : 0;
+    EXPECT_EQ(n_within, 50U);
+  }
+}
+
+TEST(DistanceStats, TheRoundingIsTwoStepsOfTheLargestOffset) {
+  // 2^-20 m is the step from 8 to 16 m: 12.5 m apart in z by 1 m and so many steps.
+  const auto is_within = [](double steps) {
+    const test::Clouds clouds{test::cloud_of({{-12.5f, 0, 0}}),
+                              test::cloud_of({{-12.5f, 0, static_cast<float>(1.0 + steps * 0x1p-20)}})};
+    return clouds.pair().estimate_to_reference().is_within(0, 1.0);
+  };
+  EXPECT_TRUE(is_within(2.0));
+  EXPECT_FALSE(is_within(2.25));
 }
 
 TEST(DistanceStats, NoDistancesAreRefused) { EXPECT_THROW(stats_of({}), std::invalid_argument); }

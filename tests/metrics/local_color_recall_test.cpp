@@ -75,13 +75,60 @@ TEST(LocalColorRecall, AFloatColorAtExactlyThreeTauIsRight) {
   EXPECT_EQ(recall(clouds, 0.2499999, 0.5).n_recalled, 0U);
 }
 
+TEST(LocalColorRecall, ThreeTauIsComparedInDouble) {
+  // 153 / 255 = 0.6: as squares of floats, 3 tau below it by a billionth would be the same number.
+  EXPECT_EQ(recall_of_color({153, 0, 0}, 0.2 - 1e-9).n_recalled, 0U);
+  EXPECT_EQ(recall_of_color({153, 0, 0}, 0.2 - 1e-13).n_recalled, 1U) << "within 1e-12";
+}
+
 TEST(LocalColorRecall, TheRadiusIsInclusive) {
   const test::Clouds clouds{test::cloud_of({{0, 0, 0}}, {{0, 0, 0}}), test::cloud_of({{0.5f, 0, 0}}, {{0, 0, 0}})};
   EXPECT_EQ(recall(clouds, 0.1, 0.5).n_recalled, 1U);
-  const LocalColorRecall none = recall(clouds, 0.1, std::nextafter(0.5, 0.0));
+  // 2^-24 m is the step from 0.5 to 1 m; two of them belong to the threshold.
+  EXPECT_EQ(recall(clouds, 0.1, 0.5 - 2 * 0x1p-24).n_covered, 1U);
+  EXPECT_EQ(local_color_recall(clouds.pair(), {.radius_m = 0.5 - 1e-9, .radius_steps = 0.0}).n_covered, 0U);
+  const LocalColorRecall none = recall(clouds, 0.1, 0.5 - 2.5 * 0x1p-24);
   EXPECT_EQ(none.n_covered, 0U);
   EXPECT_EQ(none.value(), 0.0);
   EXPECT_TRUE(std::isnan(none.conditional()));
+}
+
+/// Points without color of a reference count nowhere, those of an estimate cover only.
+TEST(LocalColorRecall, MissingColorsByHand) {
+  test::Clouds clouds{test::cloud_of({{0, 0, 0}, {10, 0, 0}, {20, 0, 0}, {30, 0, 0}, {40, 0, 0}}),
+                      test::cloud_of({{0.25f, 0, 0}, {10.25f, 0, 0}, {30, 0, 0}, {30.25f, 0, 0}, {40, 0, 0}})};
+  clouds.reference.colors = Array<RgbF>{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {NAN, NAN, NAN}};
+  clouds.estimate.colors = Array<RgbF>{{0, 0, 0}, {NAN, NAN, NAN}, {NAN, NAN, NAN}, {0.25f, 0, 0}, {0, 0, 0}};
+  const MapPair pair = clouds.pair();
+  const LocalColorRecall found = local_color_recall(pair, {.curve = true});
+  EXPECT_EQ(found.n_reference, 4U);
+  EXPECT_EQ(found.n_covered, 3U);
+  EXPECT_EQ(found.n_recalled, 2U);
+  EXPECT_EQ(found.curve.value.front(), 0.25) << "0.25 is not within 0.06";
+  EXPECT_EQ(in_original_order(pair.reference.index.points, found.classes),
+            (Array<RecallClass>{RecallClass::kRecalled, RecallClass::kWrongColor, RecallClass::kNotCovered,
+                                RecallClass::kRecalled, RecallClass::kNoColor}));
+}
+
+/// Leaving colors out one by one changes the others' classes in nothing but what they lost.
+TEST(LocalColorRecall, MissingColorsEqualTheDefinition) {
+  test::Clouds clouds = test::two_sheets(1500, 1200);
+  const auto with_gaps = [](const PointCloud& cloud, std::size_t every) {
+    Array<RgbF> colors(cloud.size());
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const Eigen::Vector3f c = test::unit_color(cloud, i).cast<float>();
+      colors[i] = i % every == 0 ? RgbF{NAN, NAN, NAN} : RgbF{c.x(), c.y(), c.z()};
+    }
+    PointCloud result = cloud;
+    result.colors = colors;
+    return result;
+  };
+  clouds = {with_gaps(clouds.reference, 7), with_gaps(clouds.estimate, 3)};
+  const MapPair pair = clouds.pair();
+  const LocalColorRecall found = local_color_recall(pair, {0.1, 0.5, false});
+  Array<RecallClass> expected = classes_by_definition(clouds, 0.1, 0.5);  // NaN is not at most 3 tau
+  for (std::size_t i = 0; i < expected.size(); i += 7) expected[i] = RecallClass::kNoColor;
+  EXPECT_EQ(in_original_order(pair.reference.index.points, found.classes), expected);
 }
 
 TEST(LocalColorRecall, EqualsTheDefinition) {

@@ -28,11 +28,12 @@ void expect_same(const MeanMapEntropy& found, const MeanMapEntropy& expected, do
 
 TEST(MeanMapEntropy, HandComputed) {
   const double e = std::numbers::e;
-  const NeighborhoodShape shape{{10, 11, 9, 12, 13}, {1.0, e * e, 1.0, 0.0, std::nan("")}};
+  const NeighborhoodShape shape{{10, 11, 9, 12, 13}, {1.0, e * e, 1.0, 0.0, std::nan("")}, {0, 0, 0, 1, 0}};
   // The third has too few neighbors, the fourth is flat, the fifth has no covariance: 1/2 (0 + 2) / 2 is left.
   const MeanMapEntropy found = mean_map_entropy(shape, 10);
   EXPECT_EQ(found.n, 2U);
-  EXPECT_EQ(found.n_left_out, 3U);
+  EXPECT_EQ(found.n_left_out, 2U);
+  EXPECT_EQ(found.n_flat, 1U);
   EXPECT_DOUBLE_EQ(found.value, kEntropyOfUnitGaussian + 0.5);
 }
 
@@ -51,7 +52,7 @@ TEST(MeanMapEntropy, NoPointQualifies) {
     const MeanMapEntropy none = entropy(cloud, 0.1, 10);
     EXPECT_TRUE(std::isnan(none.value));
     EXPECT_EQ(none.n, 0U);
-    EXPECT_EQ(none.n_left_out, cloud.size());
+    EXPECT_EQ(none.n_left_out + none.n_flat, cloud.size());
   }
   EXPECT_EQ(entropy(test::grid_cloud(1), 5.0, 2).n, 0U);  // three points on a line
 }
@@ -104,11 +105,56 @@ TEST(MeanMapEntropy, MorePointsQualifyWithALargerRadiusAndFewerWithMoreNeighbors
   for (double radius_m : {0.1, 0.2, 0.3, 0.5, 1.0}) {
     const MeanMapEntropy found = entropy(cloud, radius_m, 10);
     EXPECT_GE(found.n, before);
-    EXPECT_EQ(found.n + found.n_left_out, cloud.size());
+    EXPECT_EQ(found.n + found.n_left_out + found.n_flat, cloud.size());
     before = found.n;
   }
   EXPECT_EQ(before, cloud.size());
   EXPECT_LT(entropy(cloud, kRadius_m, 40).n, entropy(cloud, kRadius_m, 10).n);
+}
+
+/// A lattice in the plane z = 0.
+PointCloud plane() {
+  PointCloud cloud;
+  for (int i = 0; i < 30; ++i) {
+    for (int j = 0; j < 30; ++j) {
+      cloud.positions.push_back({0.1f * static_cast<float>(i), 0.1f * static_cast<float>(j), 0});
+    }
+  }
+  return cloud;
+}
+
+Eigen::Matrix4d turned(double angle_rad, const Eigen::Vector3d& axis) {
+  Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
+  T.topLeftCorner<3, 3>() = Eigen::AngleAxisd(angle_rad, axis.normalized()).toRotationMatrix();
+  return T;
+}
+
+TEST(MeanMapEntropy, AnExactPlaneHasNoneWhicheverWayItIsTurned) {
+  for (const Eigen::Vector3d& axis : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(-3, 1, 0)}) {
+    for (double angle_rad : {0.0, 0.01, 0.7, 1.5707963267948966, 2.3}) {
+      for (const Eigen::Vector3d& shift : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(7, -31, 2)}) {
+        PointCloud cloud = transformed(plane(), test::translation(shift) * turned(angle_rad, axis));
+        const MeanMapEntropy found = entropy(cloud, 0.25, 5);
+        EXPECT_EQ(found.n, 0U) << angle_rad << " about " << axis.transpose();
+        EXPECT_EQ(found.n_left_out, 0U);
+        EXPECT_EQ(found.n_flat, 900U);
+        EXPECT_TRUE(std::isnan(found.value));
+      }
+    }
+  }
+}
+
+TEST(MeanMapEntropy, WhatIsThickerThanTheRoundingHasOne) {
+  std::mt19937_64 random(3);
+  PointCloud cloud = plane();
+  for (Eigen::Vector3f& p : cloud.positions) p.z() = 1e-4f * static_cast<float>(test::uniform(random));
+  // Coordinates below 4 m are held to 2.4e-7 m; 1e-4 / sqrt 12 = 2.9e-5 is a hundred times as much.
+  EXPECT_EQ(entropy(cloud, 0.25, 5).n, 900U);
+  // The same far away, or from a file of millimeters, would be rounding.
+  EXPECT_EQ(entropy(transformed(cloud, test::rigid_motion()), 0.25, 5).n, 900U);
+  const Bvh index(sort_points(cloud));
+  EXPECT_EQ(mean_map_entropy(neighborhood_shapes(index, 0.25, 0.001), 5).n_flat, 900U);
+  EXPECT_EQ(mean_map_entropy(neighborhood_shapes(index, 0.25, 1e-7), 5).n, 900U);
 }
 
 TEST(MeanMapEntropy, IsLowerForASharperMap) {

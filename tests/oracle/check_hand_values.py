@@ -61,8 +61,9 @@ HAND = {
         "color_distance_by_range.per_range.0.value": 0.2 * sqrt(3), "color_distance_by_range.per_range.1.value": None,
     },
     "black_white_voxel": {
-        "color_consistency.value": 1, "color_consistency.value_x100": 100, "color_consistency.n_voxels": 1,
-        "color_consistency.n_voxels_below_min": 1, "color_consistency.reference.value": 0.9,
+        "color_consistency.value": 1 / 2, "color_consistency.value_x100": 50, "color_consistency.n_voxels": 2,
+        "color_consistency.zero": 1 / 2, "color_consistency.exclude": 1, "color_consistency.median": 1,
+        "color_consistency.n_occupied": 2, "color_consistency.n_singletons": 1, "color_consistency.reference.value": 0.9,
         "color_distance.estimate_to_reference": 40 / 255, "color_distance.reference_to_estimate": sqrt(3) / 3,
     },
     "two_points": {
@@ -91,10 +92,42 @@ HAND = {
     },
     "one_point": {
         "chamfer.value": 1, "fitness.per_threshold.0.value": 1, "fitness.per_threshold.1.value": 0,
-        "color_distance.value": sqrt(3), "color_fidelity.value": -10 * log10(3), "delta_e.value": 100, "color_psnr.value": 0,
-        "local_color_recall.value": 0, "local_color_recall.coverage": 1, "color_consistency.value": None,
+        "color_distance.value": sqrt(3), "color_fidelity.value": -10 * log10(3), "color_psnr.value": -20 * log10(0.5748),
+        "local_color_recall.value": 0, "local_color_recall.coverage": 1, "color_consistency.value": 0,
+        "color_consistency.exclude": None, "color_consistency.median": None, "color_consistency.n_singletons": 1,
         "color_distance_exposure_free.value": None, "average_wasserstein.value": None, "spatial_consistency.value": None,
-        "mean_map_entropy.value": None, "mean_map_entropy.n_left_out": 1,
+        "mean_map_entropy.value": None, "mean_map_entropy.n_left_out": 1, "mean_map_entropy.n_flat": 0,
+    },
+    "authors_example": {
+        "color_distance.value": sqrt(1.36) / 10, "color_fidelity.value": -20 * log10(sqrt(1.36) / 10),
+        "local_color_recall.value": 0.8, "local_color_recall.coverage": 0.8, "color_consistency.value": 0.02,
+        "color_consistency.exclude": 0.02, "color_consistency.n_voxels": 2, "color_consistency.n_singletons": 0,
+        "color_consistency.reference.value": 0.04 / 3, "color_consistency.reference.n_singletons": 1,
+    },
+    "lone_point": {
+        "color_consistency.value": 0.02, "color_consistency.zero": 0.04 / 3, "color_consistency.exclude": 0.02,
+        "color_consistency.n_voxels": 2, "color_consistency.n_occupied": 3, "color_consistency.n_singletons": 1,
+        "local_color_recall.value": 1,
+    },
+    "voxel_centers": {
+        "fitness.per_threshold.1.value": 3 / 4, "completeness.per_threshold.1.n": 3, "f_score.per_threshold.1.value": 3 / 4,
+        "fitness.per_threshold.0.value": 1, "fitness.per_threshold.2.value": 0, "accuracy.per_threshold.1.n": 3,
+        "overlap.value": 3 / 4, "local_color_recall.coverage": 3 / 4, "local_color_recall.value": 3 / 4,
+        "color_distance.n_estimate": 3, "color_distance.n_unmatched_reference": 1,
+        "color_distance_by_range.per_range.1.n_estimate": 3, "color_distance_by_range.per_range.2.n_estimate": 1,
+    },
+    "tilted_plane": {
+        "mean_map_entropy.value": None, "mean_map_entropy.n": 0, "mean_map_entropy.n_left_out": 0, "mean_map_entropy.n_flat": 49,
+        "mean_map_entropy.reference.value": None, "mean_map_entropy.reference.n_flat": 49,
+    },
+    "missing_colors": {
+        "chamfer.value": 0.25 + (0.5 + sqrt(1.0625)) / 3, "color_distance.value": 0.25, "color_distance.n_estimate": 1,
+        "color_distance.n_reference": 1, "color_distance.n_unmatched_estimate": 1, "color_distance.n_unmatched_reference": 2,
+        "color_distance.n_without_color_estimate": 1, "color_distance.n_without_color_reference": 1,
+        "color_fidelity.value": -20 * log10(0.25), "local_color_recall.value": 1 / 2, "local_color_recall.coverage": 1,
+        "local_color_recall.n_reference": 2, "color_consistency.value": 0, "color_consistency.n_occupied": 1,
+        "color_consistency.n_without_color": 1, "color_consistency.reference.n_occupied": 2, "delta_e.estimate_to_reference.n": 1,
+        "color_psnr.y": -20 * log10(0.2126 / 4), "color_distance_exposure_free.n_pairs": 1,
     },
     "gaussian_voxels": {
         "average_wasserstein.value": (0.75 + WIDE) / 3, "average_wasserstein.median": WIDE, "average_wasserstein.n_voxels": 3,
@@ -106,6 +139,7 @@ HAND = {
     "entropy": {
         "mean_map_entropy.value": 1.5 * log(2 * pi * e) + 0.5 * log(0.064), "mean_map_entropy.n": 1,
         "mean_map_entropy.n_left_out": 6, "mean_map_entropy.reference.value": None, "mean_map_entropy.reference.n_left_out": 7,
+        "mean_map_entropy.n_flat": 0,
     },
     "color_gate": {
         "color_distance.value": 0.2, "color_distance.n_estimate": 1, "color_distance.n_unmatched_estimate": 1,

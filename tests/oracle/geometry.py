@@ -1,4 +1,7 @@
-"""Metrics of the two distance fields. e2r[i] = d(x_i^s, R) for the estimate S, r2e[j] = d(x_j^r, S) for the reference R, in meters."""
+"""Metrics of the two distance fields. e2r[i] = d(x_i^s, R) for the estimate S, r2e[j] = d(x_j^r, S) for the reference R, in meters.
+
+e2r_at and r2e_at: the least thresholds at which they count as within (neighbors.thresholded).
+"""
 import numpy as np
 
 
@@ -30,34 +33,34 @@ def chamfer(e2r, r2e, cap):
             "n_estimate": len(e2r), "n_reference": len(r2e)}
 
 
-def accuracy(e2r, thresholds):
-    """Per threshold t: RMSE, mean and median of the e2r <= t."""
+def accuracy(e2r, e2r_at, thresholds):
+    """Per threshold t: RMSE, mean and median of the e2r within t."""
     records = []
     for t in thresholds:
-        x = e2r[e2r <= t]
+        x = e2r[e2r_at <= t]
         records.append({"threshold_m": t, "value": rms(x), "mean": mean(x), "median": quantile(x, 0.5), "n": len(x)})
     return {"per_threshold": records}
 
 
-def share_within(distance, thresholds):
-    """Per threshold t: #{d <= t} / N. Fitness (precision) of e2r, completeness (recall) of r2e."""
-    counts = [int(np.sum(distance <= t)) for t in thresholds]
-    return {"per_threshold": [{"threshold_m": t, "value": n / len(distance), "n": n} for t, n in zip(thresholds, counts)]}
+def share_within(at, thresholds):
+    """Per threshold t: #{d within t} / N. Fitness (precision) of e2r_at, completeness (recall) of r2e_at."""
+    counts = [int(np.sum(at <= t)) for t in thresholds]
+    return {"per_threshold": [{"threshold_m": t, "value": n / len(at), "n": n} for t, n in zip(thresholds, counts)]}
 
 
-def f_score(e2r, r2e, thresholds):
+def f_score(e2r_at, r2e_at, thresholds):
     """F = 2PR/(P+R), 0 when both are 0."""
     records = []
     for t in thresholds:
-        p, r = float(np.mean(e2r <= t)), float(np.mean(r2e <= t))
+        p, r = float(np.mean(e2r_at <= t)), float(np.mean(r2e_at <= t))
         records.append({"threshold_m": t, "value": 2 * p * r / (p + r) if p + r > 0 else 0.0, "precision": p, "recall": r})
     return {"per_threshold": records}
 
 
-def overlap(e2r, distance):
-    """#{e2r <= distance} / N_s."""
-    n = int(np.sum(e2r <= distance))
-    return {"value": n / len(e2r), "n": n, "n_estimate": len(e2r)}
+def overlap(e2r_at, distance):
+    """#{e2r within distance} / N_s."""
+    n = int(np.sum(e2r_at <= distance))
+    return {"value": n / len(e2r_at), "n": n, "n_estimate": len(e2r_at)}
 
 
 def hausdorff(e2r, r2e):
@@ -67,7 +70,7 @@ def hausdorff(e2r, r2e):
             "reference_to_estimate": directed[1]}
 
 
-def rmse(e2r, distance):
-    """sqrt(mean e2r^2) over all; inlier_rmse over the e2r <= distance."""
-    inliers = e2r[e2r <= distance]
+def rmse(e2r, e2r_at, distance):
+    """sqrt(mean e2r^2) over all; inlier_rmse over the e2r within distance."""
+    inliers = e2r[e2r_at <= distance]
     return {"value": rms(e2r), "inlier_rmse": rms(inliers), "n": len(e2r), "n_inliers": len(inliers)}

@@ -17,6 +17,23 @@ def lowest_of_nearest(point, targets, candidates):
     return candidates[np.argmin(squared_distance(point, targets[candidates]))]
 
 
+def common_origin(ref, est):
+    """Where offsets are counted from: on each axis the multiple of a power of ten (at least 100 m and the extent) nearest to the box's center."""
+    low, high = np.minimum(ref.min(axis=0), est.min(axis=0)), np.maximum(ref.max(axis=0), est.max(axis=0))
+    unit = np.array([10.0 ** max(2, int(np.ceil(np.log10(max(e, 1e-300))))) for e in high - low])
+    return np.floor((low + high) / 2 / unit + 0.5) * unit
+
+
+def float_steps(a, b):
+    """The step of single precision at the largest absolute coordinate of each pair of offsets."""
+    return np.spacing(np.maximum(np.abs(a), np.abs(b)).max(axis=-1).astype(np.float32)).astype(np.float64)
+
+
+def thresholded(distance, a, b):
+    """The least threshold at which each distance counts as within: two float steps of the offsets below it."""
+    return distance - 2 * float_steps(a, b)
+
+
 def nearest(points, targets):
     """For each point the index of its nearest target (ties: the lowest index) and the distance in meters."""
     tree = cKDTree(targets)
@@ -31,15 +48,20 @@ def nearest(points, targets):
     return index, np.sqrt(squared_distance(points, targets[index]))
 
 
-def pairs_within(points, targets, radius):
-    """Yield (first, i, j) for chunks of points: every pair |points[first + i] - targets[j]| <= radius, sorted by i."""
+def pairs_within(points, targets, radius, rounded=False):
+    """Yield (first, i, j) for chunks of points: every pair |points[first + i] - targets[j]| <= radius, sorted by i.
+
+    rounded: up to two float steps of the offsets (which the points then are).
+    """
     tree = cKDTree(targets)
+    reach = radius + 4 * np.spacing(np.float32(np.abs(targets).max() + radius)) if rounded else radius
     for first in range(0, len(points), CHUNK):
         chunk = points[first:first + CHUNK]
-        pairs = cKDTree(chunk).sparse_distance_matrix(tree, radius * (1 + 1e-9), output_type="ndarray")
+        pairs = cKDTree(chunk).sparse_distance_matrix(tree, reach * (1 + 1e-9), output_type="ndarray")
         order = np.argsort(pairs["i"], kind="stable")
         i, j = pairs["i"][order], pairs["j"][order]
-        inside = np.sqrt(squared_distance(chunk[i], targets[j])) <= radius
+        distance = np.sqrt(squared_distance(chunk[i], targets[j]))
+        inside = (thresholded(distance, chunk[i], targets[j]) if rounded else distance) <= radius
         yield first, i[inside], j[inside]
 
 

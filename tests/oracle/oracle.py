@@ -14,7 +14,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import color  # noqa: E402
 import geometry  # noqa: E402
 import structure  # noqa: E402
-from neighbors import nearest  # noqa: E402
+from neighbors import common_origin, nearest, thresholded  # noqa: E402
 from ply import read_ply  # noqa: E402
 
 DEFAULTS = {
@@ -23,7 +23,8 @@ DEFAULTS = {
     "lcr-tau": 0.1,
     "lcr-radius": 0.5,
     "lcr-curve": False,
-    "ccs-voxel": 0.2,
+    "ccs-voxel": 0.1,
+    "ccs-singletons": "zero",
     "ccs-min-points": 2,
     "awd-voxel": 3.0,
     "awd-min-points": 100,
@@ -44,39 +45,41 @@ def with_defaults(given):
     return {**DEFAULTS, **given}
 
 
-def geometry_metrics(e2r, r2e, o):
-    """Everything that reads the two distance fields."""
+def geometry_metrics(e2r, r2e, e2r_at, r2e_at, o):
+    """Everything that reads the two distance fields, and the thresholds that these count as at."""
     return {
         "chamfer": geometry.chamfer(e2r, r2e, o["overlap-distance"]),
-        "accuracy": geometry.accuracy(e2r, o["thresholds"]),
-        "fitness": geometry.share_within(e2r, o["thresholds"]),
-        "completeness": geometry.share_within(r2e, o["thresholds"]),
-        "f_score": geometry.f_score(e2r, r2e, o["thresholds"]),
-        "overlap": geometry.overlap(e2r, o["overlap-distance"]),
+        "accuracy": geometry.accuracy(e2r, e2r_at, o["thresholds"]),
+        "fitness": geometry.share_within(e2r_at, o["thresholds"]),
+        "completeness": geometry.share_within(r2e_at, o["thresholds"]),
+        "f_score": geometry.f_score(e2r_at, r2e_at, o["thresholds"]),
+        "overlap": geometry.overlap(e2r_at, o["overlap-distance"]),
         "hausdorff": geometry.hausdorff(e2r, r2e),
-        "rmse": geometry.rmse(e2r, o["overlap-distance"]),
+        "rmse": geometry.rmse(e2r, e2r_at, o["overlap-distance"]),
     }
 
 
-def structure_metrics(ref, est, o):
+def structure_metrics(ref, est, origin, o):
     """Everything that reads local Gaussians."""
     distances = structure.voxel_distances(est, ref, o["awd-voxel"], o["awd-min-points"])
     return {
         "average_wasserstein": structure.average_wasserstein(distances),
         "spatial_consistency": structure.spatial_consistency(distances, o["scs-radius"]),
-        "mean_map_entropy": structure.mean_map_entropy(est, ref, o["mme-radius"], o["mme-min-neighbors"]),
+        "mean_map_entropy": structure.mean_map_entropy(est - origin, ref - origin, o["mme-radius"], o["mme-min-neighbors"]),
     }
 
 
-def color_metrics(ref, ref_color, est, est_color, e2r, r2e, o):
+def color_metrics(ref, ref_color, est, est_color, e2r, r2e, origin, o):
     """Everything that reads colors; e2r and r2e are color.Direction."""
     cd = color.color_distance(e2r, r2e, o["color-max-distance"])
-    best = color.nearest_colors_within(ref, ref_color, est, est_color, o["lcr-radius"])
+    best = color.nearest_colors_within(ref - origin, ref_color, est - origin, est_color, o["lcr-radius"])
+    recall = color.local_color_recall(best, o["lcr-tau"], o["lcr-curve"])
     return {
         "color_distance": cd,
         "color_fidelity": color.color_fidelity(cd["value"]),
-        "local_color_recall": color.local_color_recall(best, o["lcr-tau"], o["lcr-curve"]),
-        "color_consistency": color.color_consistency(est, est_color, ref, ref_color, o["ccs-voxel"], o["ccs-min-points"]),
+        "local_color_recall": {**recall, **color.without_color(est_color, ref_color)},
+        "color_consistency": color.color_consistency(est, est_color, ref, ref_color, o["ccs-voxel"], o["ccs-singletons"],
+                                                     o["ccs-min-points"]),
         "delta_e": color.delta_e(e2r, r2e, o["lcr-radius"]),
         "color_distance_by_range": color.color_distance_by_range(e2r, r2e),
         "color_distance_exposure_free": color.color_distance_exposure_free(e2r, r2e, o["lcr-radius"], o["color-max-distance"]),
@@ -90,14 +93,17 @@ def evaluate(ref_path, est_path, given):
     (ref, ref_color), (est, est_color) = read_ply(ref_path), read_ply(est_path)
     index_er, e2r = nearest(est, ref)
     index_re, r2e = nearest(ref, est)
+    origin = common_origin(ref, est)
+    e2r_at = thresholded(e2r, est - origin, ref[index_er] - origin)
+    r2e_at = thresholded(r2e, ref - origin, est[index_re] - origin)
     if ref_color is None or est_color is None:
         metrics = dict.fromkeys(COLOR_METRICS)
     else:
-        er = color.Direction(e2r, est_color, ref_color[index_er])
-        re = color.Direction(r2e, ref_color, est_color[index_re])
-        metrics = color_metrics(ref, ref_color, est, est_color, er, re, o)
-    metrics.update(geometry_metrics(e2r, r2e, o))
-    metrics.update(structure_metrics(ref, est, o))
+        er = color.Direction(e2r_at, est_color, ref_color[index_er])
+        re = color.Direction(r2e_at, ref_color, est_color[index_re])
+        metrics = color_metrics(ref, ref_color, est, est_color, er, re, origin, o)
+    metrics.update(geometry_metrics(e2r, r2e, e2r_at, r2e_at, o))
+    metrics.update(structure_metrics(ref, est, origin, o))
     return {"options": o, "metrics": metrics}
 
 

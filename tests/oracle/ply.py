@@ -45,7 +45,8 @@ def read_vertices(stream, form, count, fields):
 
 
 def read_ply(path):
-    """Return (points n x 3, colors n x 3 in [0,1] or None), both double; points that are not finite are dropped."""
+    """Return (points n x 3, colors n x 3 in [0,1] or None), both double; points that are not finite are dropped, NaN is no color, and
+    nothing but black is none either."""
     with open(path, "rb") as stream:
         form, count, fields = read_header(stream)
         vertices = read_vertices(stream, form, count, fields)
@@ -55,7 +56,8 @@ def read_ply(path):
     if not {"red", "green", "blue"} <= set(kinds):
         return points[finite], None
     channels = [vertices[k].astype(np.float64) / COLOR_SCALE[kinds[k]] for k in ("red", "green", "blue")]
-    return points[finite], np.stack(channels, axis=1)[finite]
+    colors = np.stack(channels, axis=1)[finite]
+    return points[finite], colors if np.nansum(colors) > 0 else None
 
 
 def write_ply(path, points, colors=None, ascii_text=False):

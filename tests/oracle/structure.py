@@ -2,7 +2,7 @@
 import numpy as np
 
 from geometry import mean, quantile
-from neighbors import pairs_within, voxel_groups
+from neighbors import float_steps, pairs_within, voxel_groups
 
 
 def gaussian(points):
@@ -54,9 +54,9 @@ def spatial_consistency(distances, radius):
     return {"value": mean(ratios), "n_voxels": len(ratios)}
 
 
-def neighborhood_determinants(points, radius, min_neighbors):
-    """det of the covariance (n-1) of each point's neighbors within radius, itself left out; NaN below min_neighbors."""
-    result = np.full(len(points), np.nan)
+def neighborhood_covariances(points, radius, min_neighbors):
+    """Covariance (n-1) of each point's neighbors within radius, itself left out; NaN below min_neighbors."""
+    result = np.full((len(points), 3, 3), np.nan)
     for first, i, j in pairs_within(points, points, radius):
         other = first + i != j
         i, j = i[other], j[other]
@@ -67,17 +67,18 @@ def neighborhood_determinants(points, radius, min_neighbors):
         delta -= center[i]
         moments = [np.bincount(i, delta[:, a] * delta[:, b], size) for a in range(3) for b in range(3)]
         full = count >= max(min_neighbors, 2)
-        cov = np.stack(moments, axis=1).reshape(-1, 3, 3)[full] / (count[full] - 1)[:, None, None]
-        result[first + np.flatnonzero(full)] = np.linalg.det(cov)
+        result[first + np.flatnonzero(full)] = np.stack(moments, axis=1).reshape(-1, 3, 3)[full] / (count[full] - 1)[:, None, None]
     return result
 
 
-def map_entropy(points, radius, min_neighbors):
-    """Mean over points of 1/2 ln((2 pi e)^3 det C); points with too few neighbors or det C <= 0 are left out and counted."""
-    det = neighborhood_determinants(points, radius, min_neighbors)
-    used = np.isfinite(det) & (det > 0)
-    entropy = 0.5 * (3 * np.log(2 * np.pi * np.e) + np.log(det[used]))
-    return {"value": mean(entropy), "n": len(entropy), "n_left_out": int(len(points) - len(entropy))}
+def map_entropy(offsets, radius, min_neighbors):
+    """Mean over points of 1/2 ln((2 pi e)^3 det C). Left out and counted: points with too few neighbors, and those whose neighborhood is flat,
+    its smallest eigenvalue below the square of single precision's step at the offsets within the radius."""
+    cov = neighborhood_covariances(offsets, radius, min_neighbors)
+    enough = np.isfinite(cov).all(axis=(1, 2))
+    flat = np.linalg.eigvalsh(cov[enough])[:, 0] < float_steps(np.abs(offsets[enough]) + radius, 0) ** 2
+    entropy = 0.5 * (3 * np.log(2 * np.pi * np.e) + np.log(np.linalg.det(cov[enough][~flat])))
+    return {"value": mean(entropy), "n": len(entropy), "n_left_out": int(np.sum(~enough)), "n_flat": int(np.sum(flat))}
 
 
 def mean_map_entropy(est, ref, radius, min_neighbors):

@@ -78,20 +78,40 @@ TEST(MakeLayer, VoxelsPaintTheirPoints) {
   options.awd_min_points = 2;
   // Two points in one voxel and one in another; the estimate lies 0.25 m higher.
   const std::vector<Rgb8> colors{{0, 0, 0}, {255, 0, 0}, {9, 9, 9}};
-  const Evaluation evaluation =
-      evaluate(test::small_map({{0.25f, 0.5f, 0.25f}, {0.75f, 0.5f, 0.25f}, {5.5f, 0.5f, 0.25f}}, colors),
-               test::small_map({{0.25f, 0.5f, 0.5f}, {0.75f, 0.5f, 0.5f}, {5.5f, 0.5f, 0.5f}}, colors), options);
+  const PointCloud reference =
+      test::small_map({{0.25f, 0.5f, 0.25f}, {0.75f, 0.5f, 0.25f}, {5.5f, 0.5f, 0.25f}}, colors);
+  const PointCloud estimate = test::small_map({{0.25f, 0.5f, 0.5f}, {0.75f, 0.5f, 0.5f}, {5.5f, 0.5f, 0.5f}}, colors);
+  const Evaluation evaluation = evaluate(reference, estimate, options);
   const Rgb8 none{160, 160, 160};
   const Layer spread = make_layer(evaluation, "ccs", {{{0.0, 1.0}}, std::nullopt, false});
   EXPECT_EQ(color_at_x(spread, 0.25), color_table(ColorMap::kInferno)[128]);  // variance of 0 and 1: 0.5
   EXPECT_EQ(color_at_x(spread, 0.75), color_table(ColorMap::kInferno)[128]);
-  EXPECT_EQ(color_at_x(spread, 5.5), none);
+  EXPECT_EQ(color_at_x(spread, 5.5), color_table(ColorMap::kInferno)[0]) << "a single point counts as 0";
+  options.ccs_singletons = Singletons::kExclude;
+  const Evaluation excluding = evaluate(reference, estimate, options);
+  EXPECT_EQ(color_at_x(make_layer(excluding, "ccs"), 5.5), none);
   const Layer distance = make_layer(evaluation, "wasserstein", {{{0.0, 0.5}}, std::nullopt, false});
   EXPECT_EQ(color_at_x(distance, 0.75), color_table(ColorMap::kViridis)[128]);  // 0.25 m of 0.5 m
   EXPECT_EQ(color_at_x(distance, 5.5), none);
   const Layer density = make_layer(evaluation, "density", {{{0.0, 2.0}}, std::nullopt, false});
   EXPECT_EQ(color_at_x(density, 0.75), color_table(ColorMap::kViridis)[255]);  // two points of two
   EXPECT_EQ(color_at_x(density, 5.5), color_table(ColorMap::kViridis)[128]);
+}
+
+TEST(MakeLayer, PointsWithoutColorHaveNoValue) {
+  PointCloud reference = test::small_map({{0, 0, 0}, {10, 0, 0}}), estimate = reference;
+  reference.colors = Array<RgbF>{{0, 0, 0}, {NAN, NAN, NAN}};
+  estimate.colors = Array<RgbF>{{0, 0, 0}, {1, 1, 1}};
+  const Evaluation evaluation = evaluate(reference, estimate, test::options_for({"color"}));
+  const Rgb8 none{160, 160, 160};
+  for (const char* name : {"color-distance", "delta-e"}) {
+    EXPECT_NE(color_at_x(make_layer(evaluation, name), 0.0), none) << name;
+    EXPECT_EQ(color_at_x(make_layer(evaluation, name), 10.0), none) << name;
+  }
+  const Layer recall = make_layer(evaluation, "lcr");
+  ASSERT_EQ(recall.classes.size(), 4u);
+  EXPECT_EQ(recall.classes[3].label, "no color of its own");
+  EXPECT_EQ(color_at_x(recall, 10.0), recall.classes[3].color);
 }
 
 TEST(MakeLayer, MapsKeepTheirColors) {

@@ -164,7 +164,7 @@ std::vector<std::uint64_t> bits_of_numbers(const Json& value) {
 
 TEST(Report, NumbersSurviveTheirText) {
   EvaluationOptions options = options_for({"all"});
-  options.as = {"mapeval", "open3d", "mpeg", "cloudcompare"};
+  options.as = {"color-map-evaluation", "cloudanalyzer", "mapeval", "open3d", "mpeg", "cloudcompare"};
   options.lcr_curve = true;
   options.lcr_radius_m = std::nextafter(0.5, 1.0);
   Eigen::Matrix4d T = Eigen::Matrix4d::Identity();

@@ -180,11 +180,35 @@ TEST(Table, RecallStandsBesideItsCoverage) {
 
 TEST(Table, ParametersThatMatterAreShown) {
   const std::string table = full_table();
-  EXPECT_THAT(line_with(table, "CCS"), ContainsRegex("voxels of 0.2 m, >= 2 points"));
+  EXPECT_THAT(line_with(table, "CCS"), ContainsRegex("voxels of 0.1 m, [0-9,]+ of one point as 0; without them [0-9]"));
   EXPECT_THAT(line_with(table, "AWD"), ContainsRegex("voxels of 3 m, >= 20 points"));
   EXPECT_THAT(line_with(table, "Overlap"), HasSubstr("within 1 m"));
   EXPECT_THAT(line_with(table, "SCS"), HasSubstr("within 5 voxels"));
   EXPECT_THAT(line_with(table, "MME"), HasSubstr("r 0.5 m"));
+}
+
+TEST(Table, ConsistencyNamesItsRule) {
+  EvaluationOptions options = options_for({"CCS"});
+  options.ccs_voxel_m = 100.0;
+  const auto line = [&] {
+    return line_with(format_table(report_of(painted_sheet(400, 1), painted_sheet(300, 2), options)), "CCS");
+  };
+  EXPECT_THAT(line(), ContainsRegex("voxels of 100 m, 0 of one point as 0; without them "));
+  options.ccs_singletons = Singletons::kExclude;
+  EXPECT_THAT(line(), ContainsRegex("voxels of 100 m, >= 2 points$"));
+}
+
+TEST(Table, FlatNeighborhoodsAreCounted) {
+  std::vector<Eigen::Vector3f> positions;  // a sheet of paper, and a cube
+  for (int i = 0; i < 25; ++i) positions.push_back({static_cast<float>(i % 5), static_cast<float>(i / 5), 0});
+  for (int i = 0; i < 27; ++i) {
+    positions.push_back({static_cast<float>(i % 3), static_cast<float>(i / 3 % 3), 100.0f + static_cast<float>(i / 9)});
+  }
+  EvaluationOptions options = options_for({"mme"});
+  options.mme_radius_m = 3.0;
+  options.mme_min_neighbors = 5;
+  const std::string table = format_table(report_of(small_map(positions), small_map(positions), options));
+  EXPECT_THAT(line_with(table, "MME"), HasSubstr(", 25 flat left out"));
 }
 
 TEST(Table, UnitsFollowTheirValues) {
@@ -211,7 +235,7 @@ TEST(Table, FourSignificantDigits) {
 
 TEST(Table, MissingValuesAreADash) {
   EvaluationOptions options = options_for({"all"});
-  options.as = {"mapeval", "open3d", "mpeg", "cloudcompare"};
+  options.as = {"color-map-evaluation", "cloudanalyzer", "mapeval", "open3d", "mpeg", "cloudcompare"};
   const std::string table = format_table(report_of(small_map({{0, 0, 0}}), small_map({{100, 0, 0}}), options));
   for (const char* symbol : {" CD ", " LCR ", " CCS ", " AC ", " AWD ", " MME "}) {
     EXPECT_THAT(line_with(table, symbol), ContainsRegex("(↓|↑) +-( |$)"));

@@ -60,7 +60,7 @@ TEST_P(SimdLevels, MostSimilarColor) {
   const ColoredIndex target{index, colors, boxes};
   const ColorQueries colored{queries, query_colors, nearest};
   Array<float> best(points.size), expected(points.size);
-  const ColorSearch search{0.3, 100.0f, 3000.0f};
+  const ColorSearch search{0.3, 100.0f, 3000.0f, 1000.0};
   level().most_similar_color(target, colored, search, 0, points.blocks.size(), best);
   plain().most_similar_color(target, colored, search, 0, points.blocks.size(), expected);
   EXPECT_EQ(best, expected);
@@ -69,11 +69,12 @@ TEST_P(SimdLevels, MostSimilarColor) {
 TEST_P(SimdLevels, NeighborhoodShapes) {
   const Bvh index(sort_points(test::sheet_cloud(20001, 8)));
   const std::size_t n = index.points.size;
-  NeighborhoodShape found{Array<std::uint32_t>(n), Array<double>(n)};
+  NeighborhoodShape found{Array<std::uint32_t>(n), Array<double>(n), Array<std::uint8_t>(n)};
   NeighborhoodShape expected = found;
-  level().neighborhood_shapes(index, 0.6, 0, index.points.blocks.size(), found);
-  plain().neighborhood_shapes(index, 0.6, 0, index.points.blocks.size(), expected);
+  level().neighborhood_shapes(index, 0.6, 0.1, 0, index.points.blocks.size(), found);
+  plain().neighborhood_shapes(index, 0.6, 0.1, 0, index.points.blocks.size(), expected);
   EXPECT_EQ(found.n_neighbors, expected.n_neighbors);
+  EXPECT_EQ(found.is_flat, expected.is_flat);
   for (std::size_t i = 0; i < n; ++i) {
     // NaN equals nothing, so the bits are compared.
     ASSERT_EQ(std::bit_cast<std::uint64_t>(found.covariance_det[i]),

@@ -204,6 +204,7 @@ class BadUsage(CmapEval):
             ("--crop", "1,2,3", "is not xmin,ymin"),
             ("--as", "pcl", '"pcl" is unknown'),
             ("--index", "octree", '"octree" is neither'),
+            ("--ccs-singletons", "ignore", '"ignore" is none of zero, exclude, refuse'),
             ("--ccs-voxel", "1e-12", "too small"),
             ("--voxel", "0", "must be above 0"),
         ):

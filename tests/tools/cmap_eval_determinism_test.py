@@ -56,7 +56,14 @@ class Determinism(CmapEval):
 
     def test_town(self):
         self.expect_the_same_from_every_run(
-            TOWN, "--metrics", "all", "--mme-radius", "0.6", "--lcr-curve", "--as", "mapeval,open3d,mpeg,cloudcompare"
+            TOWN,
+            "--metrics",
+            "all",
+            "--mme-radius",
+            "0.6",
+            "--lcr-curve",
+            "--as",
+            "color-map-evaluation,cloudanalyzer,mapeval,open3d,mpeg,cloudcompare",
         )
 
     def test_large_real_map(self):

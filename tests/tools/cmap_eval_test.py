@@ -178,7 +178,7 @@ class Results(CmapEval):
         help_text = self.run_program("--help").stdout.decode()
         for option in (
             "output format config preset metrics thresholds overlap-distance lcr-tau lcr-radius lcr-curve ccs-voxel "
-            "ccs-min-points awd-voxel awd-min-points scs-radius mme-radius mme-min-neighbors color-max-distance voxel "
+            "ccs-singletons ccs-min-points awd-voxel awd-min-points scs-radius mme-radius mme-min-neighbors color-max-distance voxel "
             "crop transform require export-errors export-reference-errors as index threads quiet version"
         ).split():
             self.assertIn(f"--{option}", help_text)
@@ -332,7 +332,12 @@ class Results(CmapEval):
             )
         jsonschema.Draft7Validator.check_schema(SCHEMA)
         good = self.evaluate(
-            self.reference, self.estimate, "--metrics", "all", "--as", "mapeval,open3d,mpeg,cloudcompare"
+            self.reference,
+            self.estimate,
+            "--metrics",
+            "all",
+            "--as",
+            "color-map-evaluation,cloudanalyzer,mapeval,open3d,mpeg,cloudcompare",
         )
 
         def broken(*path, value=None):

@@ -9,6 +9,7 @@
 
 #include "cmap/core/point_cloud.hpp"
 #include "cmap/io/point_cloud_file.hpp"
+#include "cmap/metrics/color_consistency.hpp"
 #include "cmap/spatial/nearest.hpp"
 #include "cmap/spatial/visibility.hpp"
 
@@ -27,7 +28,8 @@ struct EvaluationOptions {
   double lcr_tau = 0.1;
   double lcr_radius_m = 0.5;
   bool lcr_curve = false;
-  double ccs_voxel_m = 0.2;
+  double ccs_voxel_m = 0.1;
+  Singletons ccs_singletons = Singletons::kZero;
   std::uint64_t ccs_min_points = 2;
   double awd_voxel_m = 3.0;
   std::uint64_t awd_min_points = 100;
@@ -37,7 +39,7 @@ struct EvaluationOptions {
   std::optional<double> color_max_distance_m;
   std::optional<double> voxel_m;  ///< thin both maps first
   std::optional<Box3d> crop;      ///< reference frame
-  std::vector<std::string> as;    ///< mapeval, open3d, mpeg, cloudcompare
+  std::vector<std::string> as;    ///< other tools, as peer_tools() names them
   std::uint64_t bootstrap = 0;    ///< replicates for confidence intervals; 0: none
   double block_m = 10.0;          ///< of the bootstrap
   Observed observed = Observed::kNone;
@@ -58,6 +60,12 @@ struct EvaluationOptions {
 
 /// What of it decides how files are read.
 ReadOptions read_options(const EvaluationOptions& options, bool sha256 = false);
+
+/// The tools of `as`.
+const std::vector<std::string>& peer_tools();
+
+/// "zero", "exclude" or "refuse".
+const char* singletons_name(Singletons singletons);
 
 /// The threshold of Tanks and Temples: as given, else the largest of the thresholds.
 double tanks_and_temples_tau_m(const EvaluationOptions& options);

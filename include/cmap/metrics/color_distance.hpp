@@ -10,13 +10,14 @@
 namespace cmap {
 
 // All of these need colors in both maps (std::invalid_argument otherwise), pair every point with its nearest neighbor
-// in space, and are bitwise the same for any number of threads. A mean over no pairs is NaN.
+// in space, and are bitwise the same for any number of threads. Pairs in which either point has no color (NaN) are left
+// out. A mean over no pairs is NaN. Distances are compared as METRICS means thresholds (spatial/threshold.hpp).
 
 /// Mean RGB distance of nearest pairs in one direction.
 struct DirectedColorDistance {
   double mean = 0.0;  ///< unit RGB
   std::uint64_t n = 0;
-  std::uint64_t n_unmatched = 0;  ///< pairs left out
+  std::uint64_t n_unmatched = 0;  ///< pairs left out: too far apart, or without both colors
 };
 
 /// Color distance CD (paper): the mean of both directed means, in unit RGB.
@@ -50,12 +51,13 @@ ExposureGains exposure_gains(const MapPair& pair, double max_distance_m);
 struct ColorPsnr {
   Eigen::Vector3d mse_estimate_to_reference;
   Eigen::Vector3d mse_reference_to_estimate;
-  /// 10 log10(1 / mse) of the worse direction, per channel; infinite where both are 0 (below 1e-24: rounding noise).
+  /// 10 log10(1 / mse) of the worse direction, per channel; infinite where both are 0 (below 1e-24: rounding noise),
+  /// NaN where a direction has no pairs.
   Eigen::Vector3d psnr_db() const;
 };
 ColorPsnr color_psnr(const MapPair& pair);
 
-/// CIEDE2000 of one point and its nearest neighbor.
+/// CIEDE2000 of one point and its nearest neighbor; NaN where either has no color.
 double delta_e(const NearestPairs& pairs, std::size_t slot);
 
 /// CIEDE2000 of nearest pairs no farther than max_distance_m. NaN without pairs.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -29,9 +30,17 @@ struct DistanceStats {
   double share_within(std::size_t i) const { return static_cast<double>(within[i].n) / static_cast<double>(n); }
 };
 
-/// Statistics of d = sqrt(sq_dist); "within" means d <= threshold, decided in double. sq_dist must not be empty.
-/// Bitwise the same for any number of threads.
-DistanceStats distance_stats(std::span<const double> sq_dist, std::span<const double> thresholds_m,
-                             double truncation_m);
+/// How far above a threshold a distance counts as at it (spatial/threshold.hpp): of_pair_m(i) for the i-th, never more
+/// than most_m, so that only distances that near to a threshold are asked about.
+struct DistanceRounding {
+  double most_m = 0.0;
+  std::function<double(std::size_t)> of_pair_m = {};
+};
+
+/// Statistics of d = sqrt(sq_dist); "within" means d <= threshold, up to the rounding, decided in double. The median
+/// within is that of as many lowest distances, which differ by the rounding at most. sq_dist must not be empty. Bitwise
+/// the same for any number of threads.
+DistanceStats distance_stats(std::span<const double> sq_dist, std::span<const double> thresholds_m, double truncation_m,
+                             const DistanceRounding& rounding = {});
 
 }  // namespace cmap

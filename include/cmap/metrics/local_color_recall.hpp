@@ -6,11 +6,12 @@
 #include <vector>
 
 #include "cmap/metrics/map_pair.hpp"
+#include "cmap/spatial/threshold.hpp"
 
 namespace cmap {
 
 /// What local color recall finds at a reference point.
-enum class RecallClass : std::uint8_t { kNotCovered = 0, kWrongColor = 1, kRecalled = 2 };
+enum class RecallClass : std::uint8_t { kNotCovered = 0, kWrongColor = 1, kRecalled = 2, kNoColor = 3 };
 
 /// A class for people, with a color that stays apart from the others' for every kind of color blindness (Okabe and Ito
 /// 2008).
@@ -18,8 +19,10 @@ struct RecallClassLook {
   std::string_view label;
   Rgb8 color;
 };
-inline constexpr std::array<RecallClassLook, 3> kRecallClassLooks{
-    {{"not covered", {187, 187, 187}}, {"wrong color", {213, 94, 0}}, {"recalled", {0, 114, 178}}}};
+inline constexpr std::array<RecallClassLook, 4> kRecallClassLooks{{{"not covered", {187, 187, 187}},
+                                                                   {"wrong color", {213, 94, 0}},
+                                                                   {"recalled", {0, 114, 178}},
+                                                                   {"no color of its own", {85, 85, 85}}}};
 
 inline const RecallClassLook& look_of(RecallClass c) { return kRecallClassLooks[static_cast<std::size_t>(c)]; }
 
@@ -27,6 +30,7 @@ struct LocalColorRecallOptions {
   double tau = 0.1;       ///< a color is right within 3 tau (unit RGB)
   double radius_m = 0.5;  ///< r_g
   bool curve = false;     ///< also for tau = 0.02, 0.04 ... 0.30
+  double radius_steps = kThresholdSteps;  ///< that a distance may exceed the radius by (spatial/threshold.hpp)
 };
 
 struct RecallCurve {
@@ -36,10 +40,11 @@ struct RecallCurve {
 };
 
 /// Local color recall LCR (paper): the share of reference points with an estimated point within radius_m whose color
-/// differs by at most 3 tau. 8-bit colors are compared in exact integers, distances in double.
+/// differs by at most 3 tau. 8-bit colors are compared in exact integers, distances in double. Reference points without
+/// color (NaN) count nowhere; estimated points without color cover, as coverage is geometric, but never recall.
 struct LocalColorRecall {
-  std::uint64_t n_reference = 0;
-  std::uint64_t n_covered = 0;  ///< with any estimated point within the radius
+  std::uint64_t n_reference = 0;  ///< that have a color
+  std::uint64_t n_covered = 0;    ///< with any estimated point within the radius
   std::uint64_t n_recalled = 0;
   RecallCurve curve;           ///< empty unless asked for
   Array<RecallClass> classes;  ///< by reference slot

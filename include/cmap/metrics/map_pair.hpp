@@ -1,23 +1,40 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 
 #include "cmap/spatial/bvh.hpp"
 #include "cmap/spatial/nearest.hpp"
+#include "cmap/spatial/threshold.hpp"
 
 namespace cmap {
 
-/// A map ready for evaluation: its index, and its colors in the index's slots (empty where it has none).
+/// Points of a cloud that have no color of their own though the cloud has colors: NaN.
+inline std::uint64_t count_without_color(const Colors& colors) {
+  const auto* values = std::get_if<Array<RgbF>>(&colors);
+  if (values == nullptr) return 0;
+  return static_cast<std::uint64_t>(std::ranges::count_if(*values, [](const RgbF& c) { return std::isnan(c[0]); }));
+}
+
+/// A map ready for evaluation: its index, and its colors in the index's slots (empty where it has none). A color of NaN
+/// is none: the point counts for geometry and not for color.
 struct IndexedMap {
   explicit IndexedMap(const PointCloud& cloud)
-      : index(sort_points(cloud)), colors(cloud.has_color() ? sort_colors(cloud, index.points) : Array<ColorBlock>{}) {}
+      : index(sort_points(cloud)),
+        colors(cloud.has_color() ? sort_colors(cloud, index.points) : Array<ColorBlock>{}),
+        n_without_color(count_without_color(cloud.colors)),
+        largest_step_m(float_step(largest_offset(index))) {}
 
   std::size_t size() const { return index.points.size; }
   bool has_color() const { return !colors.empty(); }
+  bool has_color_at(std::size_t slot) const { return !std::isnan(color_at(colors, slot).x()); }
   Eigen::Vector3d color(std::size_t slot) const { return color_at(colors, slot).cast<double>(); }
 
   Bvh index;
   Array<ColorBlock> colors;
+  std::uint64_t n_without_color;  ///< points whose color is NaN
+  double largest_step_m;          ///< float's step at the largest coordinate of any offset
 };
 
 /// One direction of the comparison: every point of `from` with its nearest point of `to`.
@@ -28,6 +45,21 @@ struct NearestPairs {
 
   std::size_t size() const { return from.size(); }
   double distance_m(std::size_t slot) const { return std::sqrt(nearest.sq_dist[slot]); }
+
+  /// Whether the pair's distance is at most a threshold, as METRICS means it (spatial/threshold.hpp).
+  bool is_within(std::size_t slot, double threshold_m) const {
+    const double d = distance_m(slot);
+    return d <= threshold_m || (d <= threshold_m + most_rounding_m() && d <= threshold_m + rounding_m(slot));
+  }
+  /// How far above a threshold the pair's distance counts as at it, and how far that of any pair may.
+  double rounding_m(std::size_t slot) const {
+    const Eigen::Vector3f a = from.index.points.offset(slot), b = to.index.points.offset(nearest.slot[slot]);
+    return kThresholdSteps * float_step(a.cwiseAbs().cwiseMax(b.cwiseAbs()).maxCoeff());
+  }
+  double most_rounding_m() const { return kThresholdSteps * std::max(from.largest_step_m, to.largest_step_m); }
+
+  /// Whether both the point and its nearest neighbor have a color.
+  bool has_colors(std::size_t slot) const { return from.has_color_at(slot) && to.has_color_at(nearest.slot[slot]); }
   /// Color of the point and of its nearest neighbor, RGB in units of 1/255.
   Eigen::Vector3d from_color(std::size_t slot) const { return from.color(slot); }
   Eigen::Vector3d to_color(std::size_t slot) const { return to.color(nearest.slot[slot]); }
@@ -36,7 +68,7 @@ struct NearestPairs {
                                    const Eigen::Vector3d& to_gain) const {
     return from_color(slot).cwiseProduct(from_gain) - to_color(slot).cwiseProduct(to_gain);
   }
-  /// Euclidean distance of both colors, unit RGB: 0 to sqrt(3).
+  /// Euclidean distance of both colors, unit RGB: 0 to sqrt(3); NaN where either has none.
   double color_distance(std::size_t slot) const { return (from_color(slot) - to_color(slot)).norm() / 255.0; }
 };
 

@@ -28,7 +28,8 @@ MapEvalAccuracy mapeval_accuracy(std::span<const double> sq_dist, std::span<cons
 /// and a Cholesky factor in place of the matrix root. Their mean is its AWD, spatial_consistency() its SCS.
 std::vector<VoxelDistance> mapeval_wasserstein_distances(std::span<const GaussianPair> pairs);
 
-/// MapEval's mean map entropy: 1/2 ln(2 pi e det C), neighbors as in mean_map_entropy.
+/// MapEval's mean map entropy: 1/2 ln(2 pi e det C) over the points of at least min_neighbors neighbors whose det C is
+/// above 0.
 struct MapEvalEntropy {
   double value;
   std::uint64_t n_valid;
@@ -49,6 +50,33 @@ struct CloudCompareDistance {
   double standard_deviation_m;
 };
 CloudCompareDistance cloudcompare_distance(std::span<const double> sq_dist);
+
+/// CloudAnalyzer 0.6.0, `evaluate`: F at its thresholds, and the area under it (trapezoids over the thresholds, divided
+/// by their range).
+inline constexpr std::array kCloudAnalyzerThresholds_m{0.05, 0.1, 0.2, 0.3, 0.5, 1.0};
+struct CloudAnalyzerScore {
+  double threshold_m, precision, recall, f1;
+};
+struct CloudAnalyzerCurve {
+  std::vector<CloudAnalyzerScore> scores;
+  double auc = 0.0;
+};
+CloudAnalyzerCurve cloudanalyzer_curve(std::span<const double> sq_dist_estimate,
+                                       std::span<const double> sq_dist_reference);
+
+/// Its summary of one direction's distances; the standard deviation is the population's.
+struct CloudAnalyzerSummary {
+  double mean_m, median_m, max_m, standard_deviation_m;
+};
+CloudAnalyzerSummary cloudanalyzer_summary(std::span<const double> sq_dist);
+
+/// Its `map-evaluate`: AWD with the covariances' eigenvalues raised to 1e-6, SCS in which a voxel among voxels of
+/// distance 0 counts as 0. NaN without voxels.
+struct CloudAnalyzerStructure {
+  double awd_m, scs;
+  std::uint64_t n_awd_voxels, n_scs_voxels;
+};
+CloudAnalyzerStructure cloudanalyzer_structure(std::span<const GaussianPair> pairs, int radius_voxels);
 
 /// A cloud as MPEG's pc_error stores it: float positions, 8-bit colors.
 struct MpegCloud {

@@ -15,6 +15,8 @@ struct ColorSearch {
   float stop_at = 0.0f;
   /// Only smaller color distances are looked for; this stands for all others.
   float unless_below = 0.0f;
+  /// Float steps at the points' offsets by which a distance may exceed the radius (spatial/threshold.hpp).
+  double radius_steps = 0.0;
 };
 
 /// What stands for the color distance of a query without a point within the radius.
@@ -27,15 +29,20 @@ Array<float> most_similar_color(const Bvh& index, const Array<ColorBlock>& index
                                 const Array<ColorBlock>& query_colors, const NearestField& nearest,
                                 const ColorSearch& search);
 
-/// Number and covariance determinant of every point's neighbors within a radius, by slot.
+/// Number and covariance of every point's neighbors within a radius, by slot.
 struct NeighborhoodShape {
   Array<std::uint32_t> n_neighbors;  ///< the point itself left out; duplicates of it count
   /// m^6, n - 1 denominator; NaN for fewer than 2 neighbors, 0 for flat ones: not above 1e-14 (trace / 3)^3, where the
   /// sign would be rounding noise.
   Array<double> covariance_det;
+  /// 1 where the neighbors are flat to the rounding of their coordinates: the covariance's smallest eigenvalue is below
+  /// the square of the larger of float's step at the offsets within the radius and file_step_m, or its determinant is
+  /// 0.
+  Array<std::uint8_t> is_flat;
 };
 
-/// Visits all neighbors at distance <= radius_m of every point, in double. Deterministic for any number of threads.
-NeighborhoodShape neighborhood_shapes(const Bvh& cloud, double radius_m);
+/// Visits all neighbors at distance <= radius_m of every point, in double; file_step_m is the step in which the file
+/// held the coordinates, 0 where it is not known. Deterministic for any number of threads.
+NeighborhoodShape neighborhood_shapes(const Bvh& cloud, double radius_m, double file_step_m = 0.0);
 
 }  // namespace cmap

@@ -113,7 +113,8 @@ class VoxelMap {
   std::size_t last_ = 0;
 };
 
-/// The cloud thinned to one point per voxel: mean position and, where it has colors, mean color (kept as float).
+/// The cloud thinned to one point per voxel: mean position and, where it has colors, mean color of the points that
+/// have one (kept as float; NaN where none has).
 /// Points are in the order in which their voxels first occur.
 PointCloud voxel_thinned(const PointCloud& cloud, double voxel_m);
 

@@ -19,8 +19,10 @@ class ColorGroup {
   ColorGroup(const Tree& tree, const ColoredIndex& target, const ColorQueries& queries, const ColorSearch& search)
       : tree_(tree), colors_(target.colors.data()), queries_(queries), search_(search) {
     sq_radius_ = search.radius_m * search.radius_m;
+    const double reach = search.radius_m + search.radius_steps * float_step(farthest_offset(target.index));
+    sq_reach_ = reach * reach;
     sq_radius_surely_ = static_cast<float>(sq_radius_ * (1.0 - kRounding));
-    sq_radius_perhaps_ = static_cast<float>(sq_radius_ * (1.0 + kRounding));
+    sq_radius_perhaps_ = static_cast<float>(sq_reach_ * (1.0 + kRounding));
     for (int l = 0; l < tree.n_levels; ++l) color_boxes_[l] = target.color_boxes.data()[l].data();
   }
 
@@ -80,8 +82,12 @@ class ColorGroup {
     for (std::size_t lane = 0; lane < kBlockSize; ++lane) {
       const std::size_t i = block * kBlockSize + lane;
       best[lane] = kNoneWithin;
-      if (i >= queries_.queries.points.size || !(queries_.nearest.sq_dist.data()[i] <= sq_radius_)) continue;
+      if (i >= queries_.queries.points.size) continue;
       const std::uint32_t slot = queries_.nearest.slot.data()[i];
+      const PointBlock& q = queries_.queries.points.blocks.data()[block];
+      if (!is_near(queries_.nearest.sq_dist.data()[i], q, lane, tree_.blocks[slot / kBlockSize], slot % kBlockSize)) {
+        continue;
+      }
       const ColorBlock& nearest = colors_[slot / kBlockSize];
       const std::size_t k = slot % kBlockSize;
       const float dr = color.r[lane] - nearest.r[k];
@@ -113,9 +119,26 @@ class ColorGroup {
       const double dx = (static_cast<double>(query_block_->x[lane]) - static_cast<double>(p.x[k])) + shift[0];
       const double dy = (static_cast<double>(query_block_->y[lane]) - static_cast<double>(p.y[k])) + shift[1];
       const double dz = (static_cast<double>(query_block_->z[lane]) - static_cast<double>(p.z[k])) + shift[2];
-      if (dx * dx + dy * dy + dz * dz <= sq_radius_) within |= 1u << lane;
+      const double sq_dist = dx * dx + dy * dy + dz * dz;
+      if (is_near(sq_dist, *query_block_, static_cast<std::size_t>(lane), p, k)) within |= 1u << lane;
     }
     return within;
+  }
+
+  /// No two points within reach of each other have a larger coordinate.
+  float farthest_offset(const Bvh& index) const {
+    double shift = 0.0;
+    for (int axis = 0; axis < 3; ++axis) shift += __builtin_fabs(queries_.queries.shift.data()[axis]);
+    return largest_offset(index) + static_cast<float>(shift + 1.001 * search_.radius_m);
+  }
+
+  /// Whether a query and a point at this squared distance are within the radius.
+  bool is_near(double sq_dist, const PointBlock& q, std::size_t lane, const PointBlock& p, std::size_t k) const {
+    if (sq_dist <= sq_radius_ || sq_dist > sq_reach_) return sq_dist <= sq_radius_;
+    const float offsets[] = {q.x[lane], q.y[lane], q.z[lane], p.x[k], p.y[k], p.z[k]};
+    float largest = 0.0f;
+    for (float v : offsets) largest = larger(largest, __builtin_fabsf(v));
+    return is_within(sq_dist, search_.radius_m, search_.radius_steps, largest);
   }
 
   void update_active() {
@@ -129,6 +152,7 @@ class ColorGroup {
   const ColorQueries& queries_;
   const ColorSearch& search_;
   double sq_radius_;
+  double sq_reach_;
   float sq_radius_surely_;
   float sq_radius_perhaps_;
   const PointBlock* query_block_ = nullptr;

@@ -8,6 +8,7 @@
 #include "cmap/spatial/k_nearest.hpp"
 #include "cmap/spatial/nearest.hpp"
 #include "cmap/spatial/radius.hpp"
+#include "cmap/spatial/threshold.hpp"
 
 namespace cmap {
 
@@ -51,7 +52,7 @@ struct Kernels {
                     std::uint32_t* slots);
   void (*most_similar_color)(const ColoredIndex& target, const ColorQueries& queries, const ColorSearch& search,
                              std::size_t begin, std::size_t end, Array<float>& best);
-  void (*neighborhood_shapes)(const Bvh& cloud, double radius_m, std::size_t begin, std::size_t end,
+  void (*neighborhood_shapes)(const Bvh& cloud, double radius_m, double file_step_m, std::size_t begin, std::size_t end,
                               NeighborhoodShape& result);
 };
 

@@ -38,18 +38,44 @@ inline void add_point(const QueryLanes& q, double px, double py, double pz, doub
 /// A determinant this small beside (trace / 3)^3 is the rounding noise of a flat neighborhood.
 constexpr double kFlat = 1e-14;
 
-/// Determinant of the covariance of lane i's neighbors, 0 if they are flat; the query itself adds zeros to the sums.
-inline double covariance_det(const Moments16& m, int i, double n) {
+struct Covariance {
+  double xx, xy, xz, yy, yz, zz;
+};
+
+/// Of lane i's n neighbors; the query itself adds zeros to the sums.
+inline Covariance covariance_of(const Moments16& m, int i, double n) {
   const double f = 1.0 / (n - 1.0);
-  const double xx = (m.xx[i] - m.x[i] * m.x[i] / n) * f;
-  const double xy = (m.xy[i] - m.x[i] * m.y[i] / n) * f;
-  const double xz = (m.xz[i] - m.x[i] * m.z[i] / n) * f;
-  const double yy = (m.yy[i] - m.y[i] * m.y[i] / n) * f;
-  const double yz = (m.yz[i] - m.y[i] * m.z[i] / n) * f;
-  const double zz = (m.zz[i] - m.z[i] * m.z[i] / n) * f;
-  const double det = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
-  const double third_of_trace = (xx + yy + zz) / 3.0;
+  return {(m.xx[i] - m.x[i] * m.x[i] / n) * f, (m.xy[i] - m.x[i] * m.y[i] / n) * f,
+          (m.xz[i] - m.x[i] * m.z[i] / n) * f, (m.yy[i] - m.y[i] * m.y[i] / n) * f,
+          (m.yz[i] - m.y[i] * m.z[i] / n) * f, (m.zz[i] - m.z[i] * m.z[i] / n) * f};
+}
+
+inline double determinant(const Covariance& c) {
+  return c.xx * (c.yy * c.zz - c.yz * c.yz) - c.xy * (c.xy * c.zz - c.yz * c.xz) + c.xz * (c.xy * c.yz - c.yy * c.xz);
+}
+
+/// 0 where it is no more than rounding noise.
+inline double covariance_det(const Covariance& c) {
+  const double det = determinant(c);
+  const double third_of_trace = (c.xx + c.yy + c.zz) / 3.0;
   return det > kFlat * third_of_trace * third_of_trace * third_of_trace ? det : 0.0;
+}
+
+/// Whether the smallest eigenvalue is below the square of a step: whether C - step^2 I is not positive definite, by its
+/// leading minors (Sylvester).
+inline bool is_flat(Covariance c, double step_m) {
+  const double sq_step = step_m * step_m;
+  c.xx -= sq_step;
+  c.yy -= sq_step;
+  c.zz -= sq_step;
+  return !(c.xx > 0.0 && c.xx * c.yy - c.xy * c.xy > 0.0 && determinant(c) > 0.0);
+}
+
+/// The step of the coordinates within the radius of a point, m: those around the origin are no finer than their own.
+inline double step_around(const PointBlock& p, int i, double radius_m, double file_step_m) {
+  const float largest = larger(__builtin_fabsf(p.x[i]), larger(__builtin_fabsf(p.y[i]), __builtin_fabsf(p.z[i])));
+  const double step_m = float_step(largest + static_cast<float>(radius_m));
+  return step_m < file_step_m ? file_step_m : step_m;
 }
 
 class NeighborhoodGroup {
@@ -93,7 +119,7 @@ class NeighborhoodGroup {
   Moments16 moments_;
 };
 
-void neighborhood_shapes(const Bvh& cloud, double radius_m, std::size_t begin, std::size_t end,
+void neighborhood_shapes(const Bvh& cloud, double radius_m, double file_step_m, std::size_t begin, std::size_t end,
                          NeighborhoodShape& result) {
   const Tree tree(cloud);
   for (std::size_t block = begin; block < end; ++block) {
@@ -103,7 +129,14 @@ void neighborhood_shapes(const Bvh& cloud, double radius_m, std::size_t begin, s
       const std::size_t slot = block * kBlockSize + static_cast<std::size_t>(i);
       const double n = moments.n[i] - 1.0;  // without the query itself
       result.n_neighbors.data()[slot] = static_cast<std::uint32_t>(n);
-      result.covariance_det.data()[slot] = n >= 2.0 ? covariance_det(moments, i, n) : __builtin_nan("");
+      result.covariance_det.data()[slot] = __builtin_nan("");
+      result.is_flat.data()[slot] = 0;
+      if (n < 2.0) continue;
+      const Covariance covariance = covariance_of(moments, i, n);
+      const double det = covariance_det(covariance);
+      result.covariance_det.data()[slot] = det;
+      result.is_flat.data()[slot] =
+          det == 0.0 || is_flat(covariance, step_around(tree.blocks[block], i, radius_m, file_step_m)) ? 1 : 0;
     }
   }
 }

@@ -12,6 +12,8 @@ constexpr float kInfinity = __builtin_inff();
 /// of 2^-24 each.
 constexpr double kRounding = 1e-6;
 
+inline float larger(float a, float b) { return a < b ? b : a; }
+
 struct Tree {
   explicit Tree(const Bvh& index)
       : blocks(index.points.blocks.data()),
