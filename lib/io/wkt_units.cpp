@@ -12,7 +12,7 @@ namespace cmap {
 namespace {
 
 constexpr double kDegree_rad = 0.017453292519943295;
-constexpr std::initializer_list<std::string_view> kVertical{"VERT_CS", "VERTCS", "VERTCRS", "VERTICALCRS"};
+const std::initializer_list<std::string_view> kVertical{"VERT_CS", "VERTCS", "VERTCRS", "VERTICALCRS"};
 
 /// A unit among a node's own children: not of the geographic system that a projection starts from.
 const WktNode* unit_of(const WktNode& node) {
