@@ -49,10 +49,11 @@ void check_rest(const ByteSource& source, const LasHeader& header, const LasReco
                 rest, room);
   }
   if (header.points > 1 && rest % header.points == 0 && rest % header.record_bytes != 0) {
-    source.fail("{} bytes are left behind the points, {} a point: a record seems to be longer than the header's {} bytes",
+    source.fail("{} bytes are left behind the points, {} a point: records seem to be longer than the header's {} bytes",
                 rest, rest / header.points, header.record_bytes);
   }
-  const std::string more = room == 0 ? "" : fmt::format(", room for {} more points than the header's {}", room, header.points);
+  const std::string more =
+      room == 0 ? "" : fmt::format(", room for {} more points than the header's {}", room, header.points);
   info.warnings.push_back({"bytes_left", fmt::format("{} bytes behind the points are not read{}", rest, more)});
 }
 

@@ -90,7 +90,7 @@ LasRecords read_las_records(const ByteSource& source, const LasHeader& header, F
   const RecordList list{"before the points", header.vlrs, std::min(header.header_bytes, end), end, false};
   walk(source, list, info, [&](const Record& record) {
     // Converters that leave the compression bit out still describe their compression.
-    if (record.user == "laszip encoded") refuse_laz(source);
+    if (record.user.starts_with("laszip encoded")) refuse_laz(source);
     keep(source, record, records);
   });
   return records;

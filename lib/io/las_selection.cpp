@@ -11,8 +11,8 @@
 namespace cmap {
 namespace {
 
-// Records looked at and then decoded while they are still in the cache.
-constexpr std::size_t kPiece = 2048;
+// Records looked at and then decoded while they are still in the nearest cache.
+constexpr std::size_t kPiece = 512;
 
 constexpr std::size_t kFlagsAt = 15;  // in a record of any format
 constexpr std::int32_t kLowest = std::numeric_limits<std::int32_t>::min();
@@ -83,27 +83,35 @@ bool LasSelection::needs_a_look(const std::byte* data, std::size_t n) const {
 void LasSelection::look(const std::byte* data, std::size_t n, const RecordLayout& layout, CloudBuilder& builder) {
   std::array<std::uint64_t, kVerdicts> counts{};
   kept_records_.clear();
+  std::size_t run = 0;  // first of the kept records that are not copied yet
+  const auto copy_until = [&](std::size_t end) {
+    kept_records_.insert(kept_records_.end(), data + run * record_bytes_, data + end * record_bytes_);
+    run = end + 1;
+  };
   for (std::size_t i = 0; i < n; ++i) {
     const std::byte* record = data + i * record_bytes_;
     const Verdict found = verdict(record);
     ++counts[found];
     ++n_of_class_[static_cast<std::uint8_t>(record[class_at_]) & class_mask_];
-    if (found != kKept) continue;
-    count_ends(record);
-    kept_records_.insert(kept_records_.end(), record, record + record_bytes_);
+    if (found == kKept) {
+      count_ends(record);
+    } else {
+      copy_until(i);
+    }
   }
+  copy_until(n);
   n_kept_ += counts[kKept];
   n_no_number_ += counts[kNoNumber];
   if (counts[kKept] > 0) builder.append(columns_at(layout, kept_records_.data()), counts[kKept]);
   for (const Verdict left_out : {kNoNumber, kWithheld, kNoise7, kNoise18, kOtherClass}) {
-    builder.leave_out(reason(left_out), counts[left_out]);
+    if (counts[left_out] > 0) builder.leave_out(reason(left_out), counts[left_out]);
   }
 }
 
 void LasSelection::count_ends(const std::byte* record) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    n_lowest_[axis] += raw_coordinate(record, axis) == kLowest ? 1 : 0;
-    n_highest_[axis] += raw_coordinate(record, axis) == kHighest ? 1 : 0;
+    const std::int32_t raw = raw_coordinate(record, axis);
+    if (is_end(raw)) ++(raw == kLowest ? n_lowest_ : n_highest_)[axis];
   }
 }
 

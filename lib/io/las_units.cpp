@@ -63,7 +63,9 @@ std::array<double, 3> meters_per_unit(const CoordinateUnits& units, FileInfo& in
 void refuse_degrees(const ByteSource& source, const CoordinateUnits& units, const PointCloud& cloud, FileInfo& info) {
   if (!units.angular) return;
   double farthest = 0.0;
-  for (std::size_t i = 0; i < cloud.size(); ++i) farthest = std::max(farthest, cloud.world(i).head<2>().cwiseAbs().maxCoeff());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    farthest = std::max(farthest, cloud.world(i).head<2>().cwiseAbs().maxCoeff());
+  }
   const std::string system = units.system.empty() ? "" : fmt::format(" ({})", units.system);
   if (farthest > 360.0) {
     info.warnings.push_back({"coordinate_system", fmt::format("the file says that its coordinates are degrees{}, but "

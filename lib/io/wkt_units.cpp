@@ -1,3 +1,7 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "io/coordinate_units.hpp"
@@ -8,23 +12,34 @@ namespace cmap {
 namespace {
 
 constexpr double kDegree_rad = 0.017453292519943295;
+const std::initializer_list<std::string_view> kVertical{"VERT_CS", "VERTCS", "VERTCRS", "VERTICALCRS"};
 
-/// The factor of a unit among a node's own children: not of the geographic system that a projection starts from.
-std::optional<double> factor_of(const WktNode& node) {
+/// A unit among a node's own children: not of the geographic system that a projection starts from.
+const WktNode* unit_of(const WktNode& node) {
   const WktNode* unit = node.child({"UNIT", "LENGTHUNIT"});
-  if (unit == nullptr || unit->values.size() < 2) return std::nullopt;
-  double factor = 0.0;
-  return parse_number(unit->values[1], factor) ? std::optional(factor) : std::nullopt;
+  return unit != nullptr && unit->values.size() > 1 ? unit : nullptr;
 }
 
 /// The unit of an axis (0, 1, 2): the coordinate system's or, in WKT 2, the axis's own.
-std::optional<double> axis_factor(const WktNode& system, std::size_t axis) {
+const WktNode* axis_unit(const WktNode& system, std::size_t axis) {
   for (const WktNode& child : system.children) {
     if (!child.is({"AXIS"}) || axis-- > 0) continue;
-    if (const auto factor = factor_of(child)) return factor;
+    if (const WktNode* unit = unit_of(child)) return unit;
     break;
   }
-  return factor_of(system);
+  return unit_of(system);
+}
+
+double factor_of(const WktNode& unit) {
+  double factor = 0.0;
+  return parse_number(unit.values[1], factor) ? factor : 0.0;
+}
+
+/// Whether a unit is a foot by its name and a meter by its factor, as some libraries wrote that of heights.
+bool is_contradiction(const WktNode& unit) {
+  std::string name = unit.values[0];
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+  return factor_of(unit) == 1.0 && (name.find("foot") != name.npos || name.find("feet") != name.npos);
 }
 
 bool has_third_axis(const WktNode& system) {
@@ -40,21 +55,29 @@ bool is_angular(const WktNode& system) {
   return axes == nullptr || axes->values.empty() || axes->values[0] != "Cartesian";
 }
 
-bool is_vertical(const WktNode& system) { return system.is({"VERT_CS", "VERTCS", "VERTCRS", "VERTICALCRS"}); }
+void read_length(const WktNode* unit, std::optional<double>& unit_m, CoordinateUnits& units) {
+  if (unit == nullptr) return;
+  if (is_contradiction(*unit)) {
+    units.problem = fmt::format("a unit named {} whose factor is that of a meter", unit->values[0]);
+    return;
+  }
+  unit_m = exact_unit_m(factor_of(*unit));
+  if (!unit_m) units.problem = fmt::format("a unit named {} whose factor is none", unit->values[0]);
+}
 
-void read_length(std::optional<double> factor, std::optional<double>& unit_m, CoordinateUnits& units) {
-  if (!factor) return;
-  unit_m = exact_unit_m(*factor);
-  if (!unit_m) units.problem = "a unit of length with a factor that is none";
+void read_vertical(const WktNode& system, CoordinateUnits& units) {
+  read_length(axis_unit(system, 0), units.vertical_m, units);
 }
 
 void read_horizontal(const WktNode& system, CoordinateUnits& units) {
-  const std::optional<double> factor = axis_factor(system, 0);
+  const WktNode* unit = axis_unit(system, 0);
   // A few projected systems (Plate Carree) are counted in degrees.
-  units.angular = is_angular(system) || (factor && std::abs(*factor - kDegree_rad) < 1e-8);
+  units.angular = is_angular(system) || (unit != nullptr && std::abs(factor_of(*unit) - kDegree_rad) < 1e-8);
   if (units.angular) return;
-  read_length(factor, units.horizontal_m, units);
-  if (has_third_axis(system)) read_length(axis_factor(system, 2), units.vertical_m, units);
+  read_length(unit, units.horizontal_m, units);
+  if (has_third_axis(system)) read_length(axis_unit(system, 2), units.vertical_m, units);
+  // Some writers put the system of the heights inside.
+  if (const WktNode* heights = system.child(kVertical)) read_vertical(*heights, units);
 }
 
 /// The systems of x, y and z, which a compound or a bound one holds.
@@ -64,8 +87,8 @@ void read_system(const WktNode& system, CoordinateUnits& units) {
     for (const WktNode& part : system.children) read_system(part, units);
   } else if (system.is({"BOUNDCRS"})) {
     if (const WktNode* source = system.child({"SOURCECRS"})) read_system(*source, units);
-  } else if (is_vertical(system)) {
-    read_length(axis_factor(system, 0), units.vertical_m, units);
+  } else if (system.is(kVertical)) {
+    read_vertical(system, units);
   } else if (system.is({"PROJCS", "PROJCRS", "PROJECTEDCRS", "DERIVEDPROJCRS", "GEOCCS", "LOCAL_CS", "ENGCRS",
                         "ENGINEERINGCRS"}) ||
              is_angular(system) || system.is({"GEODCRS", "GEODETICCRS"})) {

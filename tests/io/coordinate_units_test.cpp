@@ -9,7 +9,6 @@ namespace cmap::testing {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using ::testing::Optional;
 
 constexpr double kFoot = 0.3048;
@@ -20,8 +19,8 @@ const std::string kGeographic =
     R"(UNIT["degree",0.0174532925199433]])";
 
 std::string projected(const std::string& unit) {
-  return R"(PROJCS["here",)" + kGeographic + R"(,PROJECTION["Transverse_Mercator"],PARAMETER["false_easting",984250],)" +
-         unit + R"(,AXIS["X",EAST],AXIS["Y",NORTH]])";
+  return R"(PROJCS["here",)" + kGeographic + R"(,PROJECTION["Mercator"],PARAMETER["false_easting",984250],)" + unit +
+         R"(,AXIS["X",EAST],AXIS["Y",NORTH]])";
 }
 
 std::string vertical(const std::string& unit) {
@@ -41,11 +40,11 @@ const Expected kWkt[] = {
     {projected(R"(UNIT["US survey foot",0.304800609601219,AUTHORITY["EPSG","9003"]])"), kSurveyFoot, 0},
     {projected(R"(UNIT["Foot_US",0.30480060960121924])"), kSurveyFoot, 0},
     {projected(R"(UNIT["foot_survey_us",0.3048006])"), kSurveyFoot, 0},
-    {projected(R"(UNIT["feet by name only",1.0])"), 1, 0},
+    {projected(R"(UNIT["a meter by its factor",0.3048])"), kFoot, 0},
     {projected(R"(UNIT["kilometre",1000])"), 1000, 0},
     {projected(R"(UNIT["a ""quoted"" unit",0.01])"), 0.01, 0},
-    {R"(COMPD_CS["both",)" + projected(R"(UNIT["metre",1])") + "," + vertical(R"(UNIT["foot",0.3048])") + "]", 1, kFoot},
-    {R"(COMPD_CS["both",)" + projected(R"(UNIT["foot",0.3048])") + "," + vertical(R"(UNIT["metre",1])") + "]", kFoot, 1},
+    {R"(COMPD_CS["c",)" + projected(R"(UNIT["metre",1])") + "," + vertical(R"(UNIT["foot",0.3048])") + "]", 1, kFoot},
+    {R"(COMPD_CS["c",)" + projected(R"(UNIT["foot",0.3048])") + "," + vertical(R"(UNIT["metre",1])") + "]", kFoot, 1},
     // Esri: two systems one after the other, brackets of the other kind, blanks and line ends.
     {projected(R"(UNIT["Foot_US",0.3048006096012192])") +
          R"(,VERTCS["NAVD_1988",VDATUM["any"],PARAMETER["Direction",1.0],UNIT["Meter",1.0]])",
@@ -54,8 +53,8 @@ const Expected kWkt[] = {
     // WKT 2: the unit behind the axes, or in each of them.
     {R"(PROJCRS["p",BASEGEOGCRS["g",DATUM["d",ELLIPSOID["e",6378137,298.25,LENGTHUNIT["metre",1]]],)"
      R"(PRIMEM["Greenwich",0,ANGLEUNIT["degree",0.0174532925199433]]],CONVERSION["c",METHOD["m"],)"
-     R"(PARAMETER["False easting",500000,LENGTHUNIT["metre",1]]],CS[Cartesian,2],AXIS["(E)",east,ORDER[1]],)"
-     R"(AXIS["(N)",north,ORDER[2]],LENGTHUNIT["US survey foot",0.304800609601219],ID["EPSG",2263]])",
+     R"w(PARAMETER["False easting",500000,LENGTHUNIT["metre",1]]],CS[Cartesian,2],AXIS["(E)",east,ORDER[1]],)w"
+     R"w(AXIS["(N)",north,ORDER[2]],LENGTHUNIT["US survey foot",0.304800609601219],ID["EPSG",2263]])w",
      kSurveyFoot, 0},
     {R"(PROJCRS["p",BASEGEODCRS["g",DATUM["d",ELLIPSOID["e",1,2,LENGTHUNIT["metre",1]]]],CS[Cartesian,3],)"
      R"(AXIS["x",east,ORDER[1],LENGTHUNIT["foot",0.3048]],AXIS["y",north,ORDER[2],LENGTHUNIT["foot",0.3048]],)"
@@ -65,7 +64,8 @@ const Expected kWkt[] = {
      R"(AXIS["up",up,LENGTHUNIT["foot",0.3048]]]])",
      1, kFoot},
     {R"(BOUNDCRS[SOURCECRS[PROJCRS["p",CS[Cartesian,2],LENGTHUNIT["foot",0.3048]]],)"
-     R"(TARGETCRS[GEOGCRS["WGS 84",CS[ellipsoidal,2],ANGLEUNIT["degree",0.0174532925199433]]],ABRIDGEDTRANSFORMATION["t"]])",
+     R"(TARGETCRS[GEOGCRS["WGS 84",CS[ellipsoidal,2],ANGLEUNIT["degree",0.0174532925199433]]],)"
+     R"(ABRIDGEDTRANSFORMATION["t"]])",
      kFoot, 0},
     {R"(GEODCRS["earth",DATUM["d"],CS[Cartesian,3],AXIS["X",geocentricX],AXIS["Y",geocentricY],AXIS["Z",geocentricZ],)"
      R"(LENGTHUNIT["metre",1]])",
@@ -75,6 +75,7 @@ const Expected kWkt[] = {
     {R"(ENGCRS["site",EDATUM["d"],CS[Cartesian,2],AXIS["x",east],AXIS["y",north],LENGTHUNIT["metre",1]])", 1, 0},
     {std::string(projected(R"(UNIT["foot",0.3048])")) + std::string(3, '\0') + "what follows the text", kFoot, 0},
     {projected(R"(AUTHORITY["EPSG","2263"])"), 0, 0},
+    {projected(R"(UNIT["metre",1],VERT_CS["inside",VERT_DATUM["d",2005],UNIT["foot",0.3048]])"), 1, kFoot},
 };
 
 TEST(WktUnits, ByFactorOfTheSystemItself) {
@@ -84,7 +85,7 @@ TEST(WktUnits, ByFactorOfTheSystemItself) {
     EXPECT_FALSE(units.angular);
     EXPECT_EQ(units.horizontal_m.value_or(0.0), horizontal_m);
     EXPECT_EQ(units.vertical_m.value_or(0.0), vertical_m);
-    EXPECT_THAT(units.problem, IsEmpty());
+    EXPECT_TRUE(units.problem.empty());
   }
 }
 
@@ -105,8 +106,9 @@ TEST(WktUnits, MalformedTextSaysNothingButThat) {
   std::string deep;
   for (int i = 0; i < 100000; ++i) deep += "PROJCS[";
   const std::string whole = projected(R"(UNIT["foot",0.3048])");
-  for (const std::string& wkt : {std::string("PROJCS[\"a\""), std::string("PROJCS[\"a]"), std::string("PROJCS[,]"), deep,
-                                 std::string("]"), std::string("<xml/>["), whole + "]", whole.substr(0, whole.size() / 2)}) {
+  const std::vector<std::string> texts{R"(PROJCS["a")", R"(PROJCS["a])", "PROJCS[,]", "]",
+                                       "<xml/>[",       whole + "]",    deep,        whole.substr(0, whole.size() / 2)};
+  for (const std::string& wkt : texts) {
     const CoordinateUnits units = units_from_wkt(wkt);
     EXPECT_FALSE(units.says_something());
     EXPECT_THAT(units.problem, HasSubstr("malformed"));
@@ -115,12 +117,23 @@ TEST(WktUnits, MalformedTextSaysNothingButThat) {
   for (const char* factor : {"0", "-1", "nan", "1e300"}) {
     const CoordinateUnits units = units_from_wkt(projected(R"(UNIT["u",)" + std::string(factor) + "]"));
     EXPECT_FALSE(units.horizontal_m) << factor;
-    EXPECT_THAT(units.problem, HasSubstr("a factor that is none"));
+    EXPECT_THAT(units.problem, HasSubstr("a unit named u whose factor is none"));
   }
 }
 
+TEST(WktUnits, AFootWithTheFactorOfAMeter) {
+  // Some libraries wrote the heights so, and inside of the projected system.
+  const CoordinateUnits units =
+      units_from_wkt(projected(R"(UNIT["US survey foot",0.3048006096012192],)" +
+                               std::string(R"(VERTCS["NAVD88",VERT_DATUM["d",2005],UNIT["US survey foot",1.0]])")));
+  EXPECT_THAT(units.horizontal_m, Optional(kSurveyFoot));
+  EXPECT_FALSE(units.vertical_m);
+  EXPECT_THAT(units.problem, HasSubstr("a unit named US survey foot whose factor is that of a meter"));
+}
+
 CoordinateUnits from_keys(const std::vector<GeoKey>& keys, const std::vector<double>& doubles = {}) {
-  return units_from_geo_keys(std::as_bytes(std::span(geo_key_directory(keys))), std::as_bytes(std::span(doubles)));
+  const std::string directory = geo_key_directory(keys);
+  return units_from_geo_keys(std::as_bytes(std::span(directory)), std::as_bytes(std::span(doubles)));
 }
 
 constexpr GeoKey kProjectedModel{1024, 0, 1, 1}, kGeographicModel{1024, 0, 1, 2};
@@ -170,7 +183,7 @@ TEST(GeoKeyUnits, DamagedLists) {
     EXPECT_FALSE(units.says_something()) << size;
     EXPECT_THAT(units.problem, HasSubstr("ends too early")) << size;
   }
-  EXPECT_THAT(from_keys({}).problem, IsEmpty()) << "an empty list is whole";
+  EXPECT_TRUE(from_keys({}).problem.empty()) << "an empty list is whole";
   EXPECT_THAT(from_keys({{3076, 0, 1, 9999}}).problem, HasSubstr("unknown code 9999"));
   EXPECT_FALSE(from_keys({{3076, 0, 1, 32767}, {3077, 34736, 1, 65535}}, {0.5}).says_something());
 }

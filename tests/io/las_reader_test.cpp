@@ -14,7 +14,7 @@ TEST(LasReader, EveryVersionAndPointFormat) {
       const auto file = read_content("a.las", las.file().str());
       EXPECT_EQ(file.info.format, "LAS 1." + std::to_string(minor) + " format " + std::to_string(format));
       EXPECT_LT((point(file, 0) - Eigen::Vector3d(500000.01, 4000000.02, 0.003)).norm(), 1e-8);
-      if (kRgbOffset[format] > 0) {
+      if (Las::kRgbOffset[format] > 0) {
         EXPECT_EQ(file.cloud.colors, Colors(Array<Rgb16>{{256, 512, 65535}}));
       } else {
         EXPECT_FALSE(file.cloud.has_color());
@@ -61,10 +61,8 @@ TEST(LasReader, RefusesLazWithTheCommandThatConvertsIt) {
   const std::string laz = Las{}.file().set(104, static_cast<U8>(0x83)).str();
   EXPECT_THAT(refusal("map.laz", laz), ::testing::AllOf(HasSubstr("laszip -i"), HasSubstr("map.las")));
   // A writer that leaves the bit out still has its record.
-  Las las{.gap = 54};
-  Bytes bytes = las.file();
-  bytes.set(100, 1U).set(227 + 2, std::array{'l', 'a', 's', 'z', 'i', 'p', ' ', 'e', 'n', 'c', 'o', 'd', 'e', 'd'});
-  EXPECT_THAT(refusal("map.las", bytes.str()), HasSubstr("laszip -i"));
+  const Las las{.records = {{"other", 1, "any"}, {"laszip encoded", 22204, std::string(52, '\1')}}};
+  EXPECT_THAT(refusal("map.las", las.file().str()), HasSubstr("laszip -i"));
 }
 
 TEST(LasReader, BadHeaders) {
@@ -95,7 +93,7 @@ TEST(LasReader, BadHeaders) {
 TEST(LasReader, ACountOfZeroBeforePointsIsAnUnfinishedFile) {
   Las las{.points = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}};
   EXPECT_THAT(refusal("a.las", las.file().set(107, 0U).str()),
-              HasSubstr("the header counts 0 points, but 102 bytes follow, room for 3 points: the file was not finished"));
+              HasSubstr("the header counts 0 points, but 102 bytes follow, room for 3 points: the file was not"));
   las = {.minor = 4, .format = 7};
   EXPECT_THAT(refusal("a.las", las.file().set(247, std::uint64_t{0}).str()), HasSubstr("room for 1 points"));
   las.points.clear();
@@ -122,7 +120,7 @@ TEST(LasReader, RecordsLongerThanTheHeaderSaysAreRefused) {
   const Las las{.extra = 2, .points = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}};
   EXPECT_THAT(all_warnings(read_content("a.las", las.file().str())), "") << "extra bytes that the header knows of";
   EXPECT_THAT(refusal("a.las", las.file().set(105, U16{34}).str()),
-              HasSubstr("6 bytes are left behind the points, 2 a point: a record seems to be longer than the header's 34"));
+              HasSubstr("6 bytes are left behind the points, 2 a point: records seem to be longer"));
 }
 
 TEST(LasReader, TwoCountsThatDisagree) {

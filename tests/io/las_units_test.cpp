@@ -7,13 +7,14 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using ::testing::Not;
 
 constexpr U16 kWktCounts = 16;
+constexpr double kFloats_m = 1e-6;  // coordinates near zero are floats
 constexpr GeoKey kProjected{1024, 0, 1, 1}, kFeet{3076, 0, 1, 9002}, kHeightsInMeters{4099, 0, 1, 9001};
 
-const std::string kSurveyFeet = R"(PROJCS["p",GEOGCS["g",UNIT["degree",0.0174532925199433]],UNIT["US survey foot",0.304800609601219]])";
+const std::string kSurveyFeet =
+    R"(PROJCS["p",GEOGCS["g",UNIT["degree",0.0174532925199433]],UNIT["US survey foot",0.304800609601219]])";
 const std::string kMetersAndFeet =
     R"(COMPD_CS["c",PROJCS["p",GEOGCS["g",UNIT["degree",0.0174532925199433]],UNIT["metre",1]],)"
     R"(VERT_CS["v",VERT_DATUM["d",2005],UNIT["foot",0.3048]]])";
@@ -27,7 +28,7 @@ TEST(LasUnits, FeetByGeoKeys) {
   Las las = las_at(2, 3);
   las.records = {geo_keys_record({kProjected, kFeet})};
   const auto file = read_content("a.las", las.file().str());
-  EXPECT_LT((point(file, 0) - Eigen::Vector3d(304.8, 609.6, 9.144)).norm(), 1e-9);
+  EXPECT_LT((point(file, 0) - Eigen::Vector3d(304.8, 609.6, 9.144)).norm(), kFloats_m);
   EXPECT_EQ(all_notes(file), "feet became meters, also of z, whose unit the file does not name\n");
 }
 
@@ -35,13 +36,13 @@ TEST(LasUnits, HeightsOfAnotherUnit) {
   Las las = las_at(2, 3);
   las.records = {geo_keys_record({kProjected, kFeet, kHeightsInMeters})};
   auto file = read_content("a.las", las.file().str());
-  EXPECT_LT((point(file, 0) - Eigen::Vector3d(304.8, 609.6, 30)).norm(), 1e-9);
+  EXPECT_LT((point(file, 0) - Eigen::Vector3d(304.8, 609.6, 30)).norm(), kFloats_m);
   EXPECT_THAT(all_notes(file), HasSubstr("x and y: feet that became meters; z: meters already"));
   las = las_at(4, 7);
   las.records = {wkt_record(kMetersAndFeet)};
   las.global_encoding = kWktCounts;
   file = read_content("a.las", las.file().str());
-  EXPECT_LT((point(file, 0) - Eigen::Vector3d(1000, 2000, 9.144)).norm(), 1e-9);
+  EXPECT_LT((point(file, 0) - Eigen::Vector3d(1000, 2000, 9.144)).norm(), kFloats_m);
 }
 
 TEST(LasUnits, WktBehindThePoints) {
@@ -49,8 +50,8 @@ TEST(LasUnits, WktBehindThePoints) {
   las.global_encoding = kWktCounts;
   las.extended_records = {{"other", 1, "any"}, wkt_record(kSurveyFeet)};
   const auto file = read_content("a.las", las.file().str());
-  EXPECT_LT((point(file, 0) - Eigen::Vector3d(1200000, 2400000, 36000) / 3937).norm(), 1e-9);
-  EXPECT_THAT(file.info.warnings, IsEmpty()) << "the records are no bytes left over";
+  EXPECT_LT((point(file, 0) - Eigen::Vector3d(1200000, 2400000, 36000) / 3937).norm(), kFloats_m);
+  EXPECT_TRUE(file.info.warnings.empty()) << "the records are no bytes left over";
 }
 
 TEST(LasUnits, MetersAndFilesThatSayNothingStayAsTheyAre) {
@@ -60,9 +61,9 @@ TEST(LasUnits, MetersAndFilesThatSayNothingStayAsTheyAre) {
         {wkt_record(R"(PROJCS["p",UNIT["metre",1]])")}, {{"somebody", 2112, kSurveyFeet}}}) {
     las.records = records;
     const auto file = read_content("a.las", las.file().str());
-    EXPECT_LT((point(file, 0) - Eigen::Vector3d(1000, 2000, 30)).norm(), 1e-9);
-    EXPECT_THAT(file.info.notes, IsEmpty());
-    EXPECT_THAT(file.info.warnings, IsEmpty());
+    EXPECT_LT((point(file, 0) - Eigen::Vector3d(1000, 2000, 30)).norm(), kFloats_m);
+    EXPECT_TRUE(file.info.notes.empty());
+    EXPECT_TRUE(file.info.warnings.empty());
   }
 }
 
@@ -70,16 +71,16 @@ TEST(LasUnits, TheHeaderSaysWhichDescriptionCounts) {
   Las las = las_at(4, 3);
   las.records = {geo_keys_record({kProjected, kFeet}), {"liblas", 2112, kSurveyFeet}};
   auto file = read_content("a.las", las.file().str());
-  EXPECT_NEAR(point(file, 0).x(), 304.8, 1e-9);
+  EXPECT_NEAR(point(file, 0).x(), 304.8, kFloats_m);
   EXPECT_THAT(all_warnings(file), HasSubstr("disagree about the units; those of the GeoKeys count"));
   las.global_encoding = kWktCounts;
   file = read_content("a.las", las.file().str());
-  EXPECT_NEAR(point(file, 0).x(), 1200000.0 / 3937.0, 1e-9);
+  EXPECT_NEAR(point(file, 0).x(), 1200000.0 / 3937.0, kFloats_m);
   las.records = {geo_keys_record({kProjected}), {"liblas", 2112, kSurveyFeet}};
   las.global_encoding = 0;
   file = read_content("a.las", las.file().str());
-  EXPECT_NEAR(point(file, 0).x(), 1200000.0 / 3937.0, 1e-9) << "keys that name no unit";
-  EXPECT_THAT(file.info.warnings, IsEmpty());
+  EXPECT_NEAR(point(file, 0).x(), 1200000.0 / 3937.0, kFloats_m) << "keys that name no unit";
+  EXPECT_TRUE(file.info.warnings.empty());
 }
 
 /// Around 11.5 degrees east and 48 north, or west and south.
@@ -114,7 +115,7 @@ TEST(LasUnits, DegreesThatCannotBeAreMeters) {
   Las las = las_in_degrees(1);
   las.offset = {690000, 5330000, 500};
   const auto file = read_content("city.las", las.file().str());
-  EXPECT_NEAR(point(file, 0).x(), 690000.001, 1e-6);
+  EXPECT_NEAR(point(file, 0).x(), 690000.001, 1e-4);
   EXPECT_THAT(all_warnings(file), HasSubstr("coordinate_system: the file says that its coordinates are degrees"));
 }
 
@@ -126,7 +127,7 @@ TEST(LasUnits, WhatIsNotUnderstoodIsSaidAndThePointsAreRead) {
         std::pair{LasRecord{"LASF_Projection", 34735, std::string(7, '\1')}, "GeoKeys that ends too early"}}) {
     las.records = {record};
     const auto file = read_content("a.las", las.file().str());
-    EXPECT_NEAR(point(file, 0).x(), 1000, 1e-9);
+    EXPECT_NEAR(point(file, 0).x(), 1000, kFloats_m);
     EXPECT_THAT(all_warnings(file), HasSubstr(says));
   }
 }
@@ -136,12 +137,12 @@ TEST(LasUnits, DamagedRecordsAreSaidAndThePointsAreRead) {
   las.records = {geo_keys_record({kProjected, kFeet}), {"other", 1, "any"}};
   const std::size_t second = las.header_bytes() + 54 + 24;
   auto file = read_content("a.las", las.file().set(second + 20, U16{4}).str());
-  EXPECT_NEAR(point(file, 0).x(), 304.8, 1e-9) << "the record before it is whole";
+  EXPECT_NEAR(point(file, 0).x(), 304.8, kFloats_m) << "the record before it is whole";
   EXPECT_THAT(all_warnings(file), HasSubstr("damaged_record: record 2 of 2 before the points is damaged"));
   file = read_content("a.las", las.file().set(100, 4000000000U).str());
   EXPECT_THAT(all_warnings(file), HasSubstr("record 3 of 4000000000 before the points is damaged"));
   file = read_content("a.las", las.file().set(las.header_bytes() + 20, U16{65535}).str());
-  EXPECT_NEAR(point(file, 0).x(), 1000, 1e-9);
+  EXPECT_NEAR(point(file, 0).x(), 1000, kFloats_m);
   EXPECT_THAT(all_warnings(file), HasSubstr("record 1 of 2 before"));
 }
 
@@ -152,12 +153,12 @@ TEST(LasUnits, DamagedExtendedRecordsAreSaidAndThePointsAreRead) {
   const std::size_t second = behind + 60 + kSurveyFeet.size();
   for (const std::uint64_t bytes : {std::uint64_t{4}, ~std::uint64_t{0}, std::uint64_t{1} << 63}) {
     const auto file = read_content("a.las", las.file().set(second + 20, bytes).str());
-    EXPECT_NEAR(point(file, 0).x(), 1200000.0 / 3937.0, 1e-9);
+    EXPECT_NEAR(point(file, 0).x(), 1200000.0 / 3937.0, kFloats_m);
     EXPECT_THAT(all_warnings(file), HasSubstr("record 2 of 2 behind the points is damaged"));
   }
   for (const std::uint64_t place : {std::uint64_t{behind - 1}, ~std::uint64_t{0}, std::uint64_t{0}}) {
     const auto file = read_content("a.las", las.file().set(235, place).str());
-    EXPECT_NEAR(point(file, 0).x(), 1000, 1e-9);
+    EXPECT_NEAR(point(file, 0).x(), 1000, kFloats_m);
     EXPECT_THAT(all_warnings(file), HasSubstr("record 1 of 2 behind the points is damaged"));
   }
 }

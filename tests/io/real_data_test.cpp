@@ -1,5 +1,7 @@
 #include "io/real_data.hpp"
 
+#include <Eigen/Geometry>
+
 #include "cmap/io/transform_file.hpp"
 
 namespace cmap::testing {
@@ -30,6 +32,30 @@ TEST_F(RealData, AutzenLasIsThePlyShifted) {
     ++matched;
   }
   EXPECT_EQ(matched, las.cloud.size());
+}
+
+TEST_F(RealData, AutzenBmxLasComesOutInMeters) {
+  // Meters across, US survey feet up: by its header from 422.93 to 434.51 of them.
+  const auto las = read("autzen_bmx_two_epochs/autzen-bmx-2010.las");
+  EXPECT_EQ(las.info.format, "LAS 1.4 format 7");
+  ASSERT_EQ(las.info.finite_points, 829U);
+  Eigen::AlignedBox3d box;
+  for (std::size_t i = 0; i < las.cloud.size(); ++i) box.extend(point(las, i));
+  EXPECT_LT((box.min() - Eigen::Vector3d(194472.82, 259222.19, 422.93 * 1200 / 3937)).norm(), 1e-3);
+  EXPECT_LT((box.max() - Eigen::Vector3d(194506.92, 259264.09, 434.51 * 1200 / 3937)).norm(), 1e-3);
+  EXPECT_EQ(read("autzen_bmx_two_epochs/autzen-bmx-2023.las").info.finite_points, 687U);
+}
+
+TEST_F(RealData, LasOfEveryVersionAndFormat) {
+  // Of the synthetic files, half of the points are withheld and eight are noise, says laspy.
+  const auto las = read("formats_laz/pdrf/pdrf7-v4-1.4.las");
+  EXPECT_EQ(las.info.points, 1024U);
+  EXPECT_EQ(las.info.finite_points, 504U);
+  EXPECT_EQ(read("formats_laz/pdrf/pdrf10-1.5.las").info.format, "LAS 1.5 format 10");
+  EXPECT_EQ(read("formats_laz/pdrf/pdrf5-1.3.las").info.points, 1024U);
+  const auto feet = read("formats_laz/pairs/1_4_w_evlr.las");
+  EXPECT_NEAR(point(feet, 0).x(), 516487.799, 2e-3);
+  EXPECT_EQ(feet.info.warnings.size(), 1U) << "its heights are feet by name and meters by factor";
 }
 
 TEST_F(RealData, KinectPcdDropsUnmeasuredPixels) {

@@ -178,8 +178,9 @@ class Results(CmapEval):
         help_text = self.run_program("--help").stdout.decode()
         for option in (
             "output format config preset metrics thresholds overlap-distance lcr-tau lcr-radius lcr-curve ccs-voxel "
-            "ccs-singletons ccs-min-points awd-voxel awd-min-points scs-radius mme-radius mme-min-neighbors color-max-distance voxel "
-            "crop transform require export-errors export-reference-errors as index threads quiet version"
+            "ccs-singletons ccs-min-points awd-voxel awd-min-points scs-radius mme-radius mme-min-neighbors "
+            "color-max-distance voxel crop transform require export-errors export-reference-errors as index keep-noise "
+            "classes threads quiet version"
         ).split():
             self.assertIn(f"--{option}", help_text)
         for code in ("0 done", "1 a --require", "2 wrong usage", "3 an input", "4 the inputs", "70 internal"):
