@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string_view>
 
 namespace cmap {
 namespace {
 
-/// What may follow x y z: r red, green and blue; n a normal; a alpha; i intensity.
-constexpr std::string_view kLayouts[] = {"r", "n", "ra", "ir", "rn", "nr", "irn", "ran", "nra", "nri", "ni", "in"};
+/// What may follow x y z: r red, green and blue; n a normal; a alpha; i intensity, label, curvature.
+constexpr std::string_view kLayouts[] = {"r", "n", "ra", "ri", "ir", "rn", "nr", "irn", "ran", "nra", "nri", "ni", "in"};
 
 std::size_t width_of(char role) { return role == 'r' || role == 'n' ? 3 : 1; }
 
@@ -25,7 +26,47 @@ struct Triple {
   double lowest = 0.0, highest = 0.0;
   bool fractions = false;
   bool unit_or_zero = true;  ///< the length of every row is 1 (as far as few digits say) or 0
+  bool alike = true;         ///< not fractions beside whole numbers above one (intensity, ring, time)
+  bool one_scale = true;     ///< not whole numbers of 8 bits beside larger ones
 };
+
+/// One column of a triple.
+struct Channel {
+  double lowest, highest;
+  bool fractions = false;
+
+  bool is_constant() const { return lowest == highest; }
+};
+
+Channel measure_channel(const NumberTable& table, std::size_t column) {
+  Channel channel{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const double v = table.at(row, column);
+    if (!std::isfinite(v)) continue;
+    channel.lowest = std::min(channel.lowest, v);
+    channel.highest = std::max(channel.highest, v);
+    channel.fractions = channel.fractions || v != std::floor(v);
+  }
+  return channel;
+}
+
+/// Whether channels are alike, which those of colors are; of a few rows, or of one value throughout, nobody can say.
+void compare_channels(const NumberTable& table, std::size_t first, Triple& triple) {
+  constexpr std::size_t kFewRows = 8;
+  constexpr double kWhite8 = 255.0;
+  if (table.rows() < kFewRows) return;
+  bool any_fractions = false, any_whole = false, any_small = false, any_large = false;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Channel channel = measure_channel(table, first + k);
+    if (channel.is_constant()) continue;
+    any_fractions = any_fractions || channel.fractions;
+    any_whole = any_whole || (!channel.fractions && channel.highest > 1.0);
+    any_small = any_small || channel.highest <= kWhite8;
+    any_large = any_large || channel.highest > kWhite8;
+  }
+  triple.alike = !(any_fractions && any_whole);
+  triple.one_scale = !(any_small && any_large);
+}
 
 Triple measure(const NumberTable& table, std::size_t first) {
   constexpr double kTolerance = 0.02;  // three numbers of two digits after the point
@@ -42,13 +83,14 @@ Triple measure(const NumberTable& table, std::size_t first) {
     }
     triple.unit_or_zero = triple.unit_or_zero && (sq_length == 0.0 || std::abs(std::sqrt(sq_length) - 1.0) < kTolerance);
   }
+  compare_channels(table, first, triple);
   return triple;
 }
 
 bool may_be_color(const Triple& t) {
   constexpr double kHighest = 65535.0;
   if (t.lowest < 0.0 || t.highest > kHighest || t.highest == 0.0) return false;
-  return !(t.unit_or_zero && t.fractions);  // colors would not all have length 1
+  return t.alike && !(t.unit_or_zero && t.fractions);  // colors would not all have length 1
 }
 
 bool may_be_alpha(const NumberTable& table, std::size_t column) {
@@ -64,8 +106,9 @@ bool fits(const NumberTable& table, std::string_view layout) {
   if (width_of(layout) + 3 != table.columns) return false;
   std::size_t column = 3;
   for (const char role : layout) {
-    const bool fit = role == 'r'   ? may_be_color(measure(table, column))
-                     : role == 'n' ? measure(table, column).unit_or_zero
+    const Triple triple = width_of(role) == 3 ? measure(table, column) : Triple();
+    const bool fit = role == 'r'   ? may_be_color(triple) && (layout == "r" || triple.one_scale)
+                     : role == 'n' ? triple.unit_or_zero
                      : role == 'a' ? may_be_alpha(table, column)
                                    : true;
     if (!fit) return false;
@@ -74,11 +117,12 @@ bool fits(const NumberTable& table, std::string_view layout) {
   return true;
 }
 
-/// Of several layouts those with this role, if there are any: a column that is alpha throughout would be a strange blue
-/// or intensity, but for a kind of file that has intensities.
-void prefer(char role, std::vector<std::string_view>& layouts) {
-  const auto lacks = [role](std::string_view layout) { return layout.find(role) == std::string_view::npos; };
-  if (!std::all_of(layouts.begin(), layouts.end(), lacks)) std::erase_if(layouts, lacks);
+/// Of several layouts those that `is_likelier` holds for, if there are any.
+template <class Test>
+void prefer(Test&& is_likelier, std::vector<std::string_view>& layouts) {
+  if (std::any_of(layouts.begin(), layouts.end(), is_likelier)) {
+    std::erase_if(layouts, [&](std::string_view layout) { return !is_likelier(layout); });
+  }
 }
 
 std::size_t place_of_color(std::string_view layout) {
@@ -92,7 +136,7 @@ std::string column_range(std::size_t first, std::size_t last) {
 
 void note_ignored(const NumberTable& table, FileInfo& info) {
   const bool one = table.columns == 4;
-  info.notes.push_back(fmt::format("{} ignored; a header line such as 'x y z r g b' would say what {}",
+  info.notes.push_back(fmt::format("{} ignored; names such as 'x y z r g b' would say what {}",
                                    column_range(4, table.columns), one ? "it holds" : "they hold"));
 }
 
@@ -111,15 +155,16 @@ std::optional<ColumnTriple> find_unnamed_colors(const NumberTable& table, bool i
   for (const std::string_view layout : kLayouts) {
     if (fits(table, layout)) fitting.push_back(layout);
   }
-  if (fitting.size() > 1) prefer(intensity_first ? 'i' : 'a', fitting);
+  // A column that is alpha throughout would be a strange blue or intensity, but for a kind of file that has intensities.
+  prefer([&](std::string_view l) { return intensity_first ? l.starts_with('i') : l.find('a') != l.npos; }, fitting);
   if (fitting.empty()) {
     note_ignored(table, info);
     return std::nullopt;
   }
   if (fitting.size() > 1) {
     info.warnings.push_back(
-        {"undecidable_columns", fmt::format("no color taken: {} may be colors or normals; a header line such as "
-                                            "'x y z r g b' or 'x y z nx ny nz' would say which",
+        {"undecidable_columns", fmt::format("no color taken: {} can be read in more than one way (colors, normals, intensity); "
+                                            "names such as 'x y z r g b' would say which they are",
                                             column_range(4, table.columns))});
     return std::nullopt;
   }

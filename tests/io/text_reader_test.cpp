@@ -50,7 +50,7 @@ TEST(TextReader, HeaderWithNormalsTakesNoColor) {
 
 TEST(TextReader, UnnamedColumnsAreNoted) {
   EXPECT_THAT(all_notes(read_content("a.xyz", "1 2 3 0.5\n")), HasSubstr("column 4 ignored"));
-  EXPECT_THAT(all_notes(read_content("a.xyz", "1 2 3 0 9 8 -7\n")), HasSubstr("columns 4 to 7 ignored"));
+  EXPECT_THAT(all_notes(read_content("a.xyz", "1 2 3 0 9 -8 -7\n")), HasSubstr("columns 4 to 7 ignored"));
 }
 
 TEST(TextReader, HeadersInUse) {

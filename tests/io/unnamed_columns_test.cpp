@@ -58,6 +58,38 @@ TEST(UnnamedColumns, EachLayoutInUse) {
   EXPECT_EQ(decide(table_of(50, [](std::size_t) { return Values{0, 0, 0}; })), std::nullopt);
 }
 
+/// One more number before or after the color: told apart where it is of another kind or scale, else undecidable.
+TEST(UnnamedColumns, OneNumberBesideTheColor) {
+  const auto fraction = [](std::size_t i) { return Values{static_cast<double>(i % 17) / 17.0}; };
+  const auto large = [](std::size_t i) { return Values{static_cast<double>(i * 83 % 4096)}; };
+  const auto label = [](std::size_t i) { return Values{static_cast<double>(i % 5)}; };
+  const auto decide_with = [](auto&& number, bool behind) {
+    return decide(table_of(50, [&](std::size_t i) {
+      return behind ? joined({color(i), number(i)}) : joined({number(i), color(i)});
+    }));
+  };
+  for (const bool behind : {false, true}) {
+    const auto expected = behind ? ColumnTriple{3, 4, 5} : ColumnTriple{4, 5, 6};
+    EXPECT_EQ(decide_with(fraction, behind), expected);
+    EXPECT_EQ(decide_with(large, behind), expected);
+    EXPECT_EQ(decide_with(label, behind), std::nullopt);
+  }
+}
+
+TEST(UnnamedColumns, IntensityRingAndTimeAreNoColor) {
+  EXPECT_EQ(decide(table_of(50, [](std::size_t i) {
+              const auto t = static_cast<double>(i);
+              return Values{std::floor(t / 2), static_cast<double>(i % 16), 0.01 * t};
+            })),
+            std::nullopt);
+}
+
+/// Channels of one value throughout say nothing.
+TEST(UnnamedColumns, ColorsInOneChannel) {
+  EXPECT_EQ(decide(table_of(50, [](std::size_t i) { return Values{static_cast<double>(i) + 0.5, 255, 0}; })),
+            (ColumnTriple{3, 4, 5}));
+}
+
 TEST(UnnamedColumns, APtsFileHasTheIntensityFirst) {
   const NumberTable white = table_of(50, [](std::size_t i) { return Values{static_cast<double>(i), 255, 255, 255}; });
   EXPECT_EQ(decide(white, true), (ColumnTriple{4, 5, 6}));
