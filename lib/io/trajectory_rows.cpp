@@ -96,10 +96,12 @@ bool is_number(std::string_view cell) {
 
 /// A name stands where a row would begin with its first number.
 bool is_header(const RowReader& reader) {
-  const std::string_view first = reader.cells().front();
-  if (first.empty() || is_number(first)) return false;
-  return std::isalpha(static_cast<unsigned char>(first.front())) != 0 || first.front() == '_' || first.front() == '"' ||
-         first.front() == '\'';
+  // pandas leaves the name of its index empty.
+  const auto named =
+      std::find_if(reader.cells().begin(), reader.cells().end(), [](auto cell) { return !cell.empty(); });
+  if (named == reader.cells().end() || is_number(*named)) return false;
+  const std::string_view first = *named;
+  return std::isalpha(static_cast<unsigned char>(first.front())) != 0 || first.front() == '_';
 }
 
 TrajectoryLayout layout_of(RowReader& reader) {

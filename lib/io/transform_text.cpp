@@ -18,7 +18,7 @@ using namespace std::string_view_literals;
 constexpr std::array kWords{"array"sv,         "matrix"sv,        "tensor"sv,       "np.array"sv,   "numpy.array"sv,
                             "np.matrix"sv,     "numpy.matrix"sv,  "torch.tensor"sv, "np.float32"sv, "np.float64"sv,
                             "numpy.float32"sv, "numpy.float64"sv, "float32"sv,      "float64"sv,    "torch.float32"sv,
-                            "torch.float64"sv, "Matrix4d"sv,      "Matrix4f"sv};
+                            "torch.float64"sv, "Matrix"sv,        "Matrix4d"sv,     "Matrix4f"sv};
 
 bool is_word(std::string_view token) {
   const char c = token.front();
@@ -30,6 +30,7 @@ class PrintedMatrix {
   explicit PrintedMatrix(LineReader& lines) : lines_(lines) {}
 
   void add_line(std::string_view line) {
+    if (line.starts_with("Tensor[")) return;  // Open3D's last line: shape, stride, type, device
     if (has_decimal_commas(line)) lines_.fail("decimal commas; write the numbers with points");
     while (!line.empty()) {
       const char c = line.front();

@@ -69,7 +69,7 @@ TEST(TrajectoryFile, ColumnsByTheirNames) {
         "\"Time\";\"X\";\"Y\";\"Z\";\"Qx\";\"Qy\";\"Qz\";\"Qw\"\n2.5;4;5;6;0;0;1;1\n",
         "#sec,nsec,x,y,z,qx,qy,qz,qw\n2,500000000,4,5,6,0,0,1,1\n",
         "header.stamp.secs,header.stamp.nsecs,x,y,z,qx,qy,qz,qw\n2,500000000,4,5,6,0,0,1,1\n",
-        "stamp_nsec x y z qx qy qz qw\n2500000000 4 5 6 0 0 1 1\n",
+        ",t,x,y,z,qx,qy,qz,qw\n0,2.5,4,5,6,0,0,1,1\n", "stamp_nsec x y z qx qy qz qw\n2500000000 4 5 6 0 0 1 1\n",
         "# timestamp [s] tx [m] ty [m] tz [m] qx [-] qy [-] qz [-] qw [-]\n2.5 4 5 6 0 0 1 1\n",
         "timestamp_ns,p_x,p_y,p_z,q_x,q_y,q_z,q_w,v_x,v_y,v_z\n2500000000,4,5,6,0,0,1,1,nan,nan,nan\n",
         "%time,field.header.seq,field.header.stamp,field.header.frame_id,field.pose.position.x,field.pose.position.y,"
