@@ -60,5 +60,142 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("--max-gap", a.max_gap_s, "poses farther apart are not interpolated between [0.15]")
       ->type_name("S")
       ->check(positive);
+  app.add_option("--times", a.times, "times of poses that have none (KITTI), one number of seconds a line")
+      ->type_name("FILE");
+  app.add_flag("--keep-noise", a.keep_noise, "LAS: points of the noise classes 7 and 18 count too");
+  app.add_option("--classes", a.classes, "LAS: only points of these classes count (2 is ground)")
+      ->type_name("N,...")
+      ->delimiter(',');
+  cmap::add_common_options(app, a.common, "no table and no warnings");
+  cmap::refuse_empty(app, {"--output", "--json", "--initial", "--times"});
+}
+
+/// Options that the method would ignore are refused: they do not do what their giver thinks.
+void refuse_unused(const CLI::App& app, const std::string& method) {
+  const auto refuse = [&](const char* option, std::initializer_list<const char*> methods) {
+    for (const char* m : methods) {
+      if (method == m) return;
+    }
+    if (app.get_option(option)->count() > 0) {
+      throw cmap::UsageError(fmt::format("{} has no meaning for --method {}", option, method));
+    }
+  };
+  refuse("--initial", {"icp", "plane", "gicp", "sim3", "tanksandtemples"});
+  refuse("--voxel", {"icp", "plane", "gicp", "sim3", "global"});
+  refuse("--max-distance", {"icp", "plane", "gicp", "sim3"});
+  refuse("--scale", {"icp", "plane", "gicp", "global"});
+  refuse("--tau", {"tanksandtemples"});
+  refuse("--fit", {"trajectory"});
+  refuse("--max-gap", {"trajectory"});
+  refuse("--times", {"trajectory"});
+  for (const char* of_maps : {"--keep-noise", "--classes"}) {
+    refuse(of_maps, {"icp", "plane", "gicp", "sim3", "global", "tanksandtemples"});
+  }
+}
+
+struct Result {
+  cmap::Alignment alignment;
+  nlohmann::ordered_json json;
+  std::string scores;  ///< further lines of the table
+};
+
+/// What was said of the inputs comes before what the alignment says.
+void add_warnings(const std::vector<cmap::Warning>& of_input, cmap::Alignment& alignment) {
+  std::vector<std::string> messages;
+  for (const cmap::Warning& warning : of_input) messages.push_back(warning.message);
+  alignment.warnings.insert(alignment.warnings.begin(), messages.begin(), messages.end());
+}
+
+Result align_trajectories(const Arguments& a) {
+  const auto [source, target] = cmap::read_trajectory_pair(a.source, a.target, cmap::path_if_given(a.times));
+  Result result;
+  try {
+    const cmap::TrajectoryFit fit = cmap::trajectory_fit_from_name(a.fit);
+    result.alignment = cmap::align_trajectories(source.poses, target.poses, fit, a.max_gap_s);
+  } catch (const cmap::UnsupportedError&) {  // what was said of the inputs may be why
+    if (!a.common.quiet) cmap::print_warnings(source.warnings), cmap::print_warnings(target.warnings);
+    throw;
+  }
+  add_warnings(target.warnings, result.alignment);
+  add_warnings(source.warnings, result.alignment);
+  result.json = cmap::alignment_json(result.alignment);
+  return result;
+}
+
+Result run_tanks_and_temples(const Arguments& a, const cmap::PointCloud& source, const cmap::PointCloud& target,
+                             const Eigen::Matrix4d& T_initial, const std::vector<cmap::Warning>& warnings) {
+  cmap::TanksAndTemplesOptions options;
+  if (!(a.tau_m > 0.0)) throw cmap::UsageError("--method tanksandtemples needs the scene's --tau");
+  options.tau_m = a.tau_m;
+  cmap::TanksAndTemplesResult found = cmap::tanks_and_temples(source, target, T_initial, options);
+  add_warnings(warnings, found.alignment);
+  Result result{found.alignment, cmap::alignment_json(found.alignment), {}};
+  result.json["tau_m"] = a.tau_m;
+  result.json["precision"] = found.precision;
+  result.json["recall"] = found.recall;
+  result.json["f_score"] = found.f_score;
+  result.scores = fmt::format("precision   {:.6g}\nrecall      {:.6g}\nF           {:.6g}   at tau {:g} m\n",
+                              found.precision, found.recall, found.f_score, a.tau_m);
+  return result;
+}
+
+Result align_maps(const Arguments& a) {
+  cmap::AlignOptions options;
+  std::vector<cmap::Warning> warnings;
+  options.T_initial = cmap::transform_or_identity(a.initial, warnings);
+  if (a.voxel_m > 0.0) options.voxel_m = a.voxel_m;
+  if (a.max_distance_m > 0.0) options.max_distance_m = a.max_distance_m;
+  options.with_scale = a.scale;
   const auto [source, target] = cmap::read_both(a.source, a.target, {.keep_noise = a.keep_noise, .classes = a.classes});
-  if (a.method == "tanksandtemples") return run_tanks_and_temples(a, source.cloud, target.cloud, options.T_initial);
+  if (a.method == "tanksandtemples") {
+    return run_tanks_and_temples(a, source.cloud, target.cloud, options.T_initial, warnings);
+  }
+  Result result{cmap::align(source.cloud, target.cloud, cmap::align_method_from_name(a.method), options), {}, {}};
+  add_warnings(warnings, result.alignment);
+  result.json = cmap::alignment_json(result.alignment);
+  return result;
+}
+
+std::string table(const Result& result) {
+  const cmap::Alignment& a = result.alignment;
+  std::string text = fmt::format("method      {}\nscale       {:.8g}\n", a.method, a.scale);
+  text += fmt::format("overlap     {:.4g}   {} of {} points", a.overlap, a.n_matches, a.n_source);
+  text += a.max_distance_m > 0.0 ? fmt::format(" within {:.4g} m\n", a.max_distance_m) : "\n";
+  text += fmt::format("RMSE        {:.6g} m\n", a.rmse_m);
+  if (!a.weakest.empty()) text += fmt::format("condition   {:.3g}   weakest: {}\n", a.condition, a.weakest);
+  if (a.iterations > 0)
+    text += fmt::format("iterations  {}   {}\n", a.iterations, a.converged ? "converged" : "NOT converged");
+  return text + result.scores;
+}
+
+/// Prints and writes everything, or writes nothing.
+void deliver(const Arguments& a, const Result& result) {
+  const std::string matrix = cmap::transform_text(result.alignment.T_dst_src);
+  cmap::OutputFiles files;
+  files.add(a.output, [&](cmap::OutputFile& file) { file.write(matrix); });
+  files.add(a.json, [&](cmap::OutputFile& file) { file.write(result.json.dump(2) + "\n"); });
+  if (!a.common.quiet) {
+    cmap::print(table(result) + (a.output.empty() ? "T_dst_src\n" + matrix : ""));
+    for (const std::string& warning : result.alignment.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  }
+  files.commit();
+}
+
+cmap::ExitCode run(const CLI::App& app, const Arguments& a) {
+  const cmap::ThreadLimit limit(a.common.threads);
+  refuse_unused(app, a.method);
+  cmap::refuse_overwriting({a.source, a.target, a.initial, a.times}, {a.output, a.json});
+  for (const std::string& output : {a.output, a.json}) cmap::require_writable(output);
+  deliver(a, a.method == "trajectory" ? align_trajectories(a) : align_maps(a));
+  return cmap::ExitCode::kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(kDescription, "cmap_align");
+  app.footer(kExample);
+  Arguments arguments;
+  add_options(app, arguments);
+  return cmap::run_program(app, argc, argv, [&] { return run(app, arguments); });
+}

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 
 #include "align/information.hpp"
 #include "cmap/core/error.hpp"
@@ -39,12 +40,29 @@ void add_observability(std::span<const PosePair> pairs, const Similarity& T, boo
   tell_observability(observability(information.H, with_scale, lever_m), result);
 }
 
+/// Where one trajectory lasts about 1e3, 1e6 or 1e9 times as long as the other, its times are probably no seconds.
+std::string unit_hint(const Trajectory& source, const Trajectory& target) {
+  constexpr std::array<std::pair<double, const char*>, 3> kUnits{
+      {{1e3, "milliseconds"}, {1e6, "microseconds"}, {1e9, "nanoseconds"}}};
+  const double source_s = source.back().time_s - source.front().time_s;
+  const double target_s = target.back().time_s - target.front().time_s;
+  if (!(source_s > 0.0 && target_s > 0.0)) return {};
+  const bool of_source = source_s > target_s;
+  const double ratio = of_source ? source_s / target_s : target_s / source_s;
+  for (const auto& [factor, name] : kUnits) {
+    if (ratio < factor / 4.0 || ratio > factor * 4.0) continue;
+    return fmt::format("; are those of the {} {}?", of_source ? "source" : "target", name);
+  }
+  return {};
+}
+
 void require_common_times(const Trajectory& source, const Trajectory& target, std::size_t n_pairs, double max_gap_s) {
   if (n_pairs > 0) return;
   if (source.empty() || target.empty()) throw UnsupportedError("a trajectory without poses cannot be aligned");
   throw UnsupportedError(fmt::format(
-      "the times do not meet: the source is from {} to {} s, the target from {} to {} s, gaps of at most {} s",
-      source.front().time_s, source.back().time_s, target.front().time_s, target.back().time_s, max_gap_s));
+      "the times do not meet: the source is from {} to {} s, the target from {} to {} s, gaps of at most {} s{}",
+      source.front().time_s, source.back().time_s, target.front().time_s, target.back().time_s, max_gap_s,
+      unit_hint(source, target)));
 }
 
 }  // namespace

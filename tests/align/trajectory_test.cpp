@@ -80,6 +80,10 @@ TEST(AlignTrajectories, RefusesWhatCannotBe) {
   const Trajectory early = curve(0.0, 5.0), late = curve(100.0, 105.0);
   EXPECT_THAT(test::refusal_of<UnsupportedError>([&] { align_trajectories(early, late, TrajectoryFit::kSe3); }),
               HasSubstr("the times do not meet: the source is from 0 to"));
+  Trajectory nanoseconds = late;
+  for (StampedPose& pose : nanoseconds) pose.time_s *= 1e9;
+  EXPECT_THAT(test::refusal_of<UnsupportedError>([&] { align_trajectories(nanoseconds, early, TrajectoryFit::kSe3); }),
+              HasSubstr("are those of the source nanoseconds?"));
   Trajectory straight = early;
   for (StampedPose& pose : straight) pose.position = {0, pose.time_s, 0};
   EXPECT_THAT(test::refusal_of<UnsupportedError>([&] { align_trajectories(straight, straight, TrajectoryFit::kSe3); }),
