@@ -9,8 +9,8 @@ namespace cmap {
 namespace {
 
 constexpr std::string_view kReadable =
-    "PLY, PCD, LAS, NPY, NPZ, PTS, PTX, KITTI .bin, COLMAP points3D, OBJ without faces and text (x y z [r g b]) can be "
-    "read";
+    "PLY, PCD, LAS, NPY, NPZ, PTS, PTX, KITTI .bin, COLMAP points3D, OpenSfM's "
+    "reconstruction.json, OBJ without faces and text (x y z [r g b]) can be read";
 
 bool is_ply(const FileStart& start) { return start.bytes.starts_with("ply\n") || start.bytes.starts_with("ply\r"); }
 bool is_las(const FileStart& start) { return start.bytes.starts_with("LASF"); }
@@ -42,6 +42,7 @@ constexpr CloudFormat kByContent[] = {
     {"COLMAP text", is_colmap_text, plain<read_colmap_text>},
     {"COLMAP binary", is_colmap_binary, plain<read_colmap_binary>},
     {"OBJ", is_obj, plain<read_obj_points>},
+    {"OpenSfM", is_opensfm, plain<read_opensfm>},
 };
 
 constexpr CloudFormat kByExtension[] = {

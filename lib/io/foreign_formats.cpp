@@ -6,6 +6,8 @@
 #include <array>
 #include <cstring>
 
+#include "io/format_readers.hpp"
+
 namespace cmap {
 namespace {
 
@@ -157,7 +159,7 @@ Answer zip(const FileStart& start) {
 
 Answer json_or_xml(const FileStart& start) {
   const std::size_t first = start.bytes.find_first_not_of(" \t\r\n");
-  if (!start.text || first == std::string_view::npos) return std::nullopt;
+  if (!start.text || first == std::string_view::npos || is_opensfm(start)) return std::nullopt;
   const std::string_view content = start.bytes.substr(first);
   if (content.starts_with("{") || content.starts_with("[{") || content.starts_with("[\n")) {
     // The description of an unpacked .sog.
@@ -194,8 +196,8 @@ Answer mesh(const FileStart& start) {
   }
   if (start.bytes.size() < kStlHeader) return std::nullopt;
   const auto n = load<std::uint32_t>(start.bytes, 80);
-  if (n > 0 && start.size == kStlHeader + std::uint64_t{n} * kStlTriangle) return "is a mesh (STL)" + std::string(kMesh);
-  return std::nullopt;
+  if (n == 0 || start.size != kStlHeader + std::uint64_t{n} * kStlTriangle) return std::nullopt;
+  return "is a mesh (STL)" + std::string(kMesh);
 }
 
 /// The other files of a COLMAP model.

@@ -35,6 +35,10 @@ PointCloud read_kitti_bin(ByteSource& source, FileInfo& info);
 bool is_obj(const FileStart& start);
 PointCloud read_obj_points(ByteSource& source, FileInfo& info);
 
+/// OpenSfM's reconstruction.json: the points of its largest reconstruction. The file is held in memory.
+bool is_opensfm(const FileStart& start);
+PointCloud read_opensfm(ByteSource& source, FileInfo& info);
+
 /// What read_point_cloud() does, on a source that is already open.
 PointCloudFile read_point_cloud(ByteSource& source, const ReadOptions& options = {});
 

@@ -16,7 +16,8 @@ using Row = std::vector<double>;
 using Rows = std::span<const Row>;
 
 bool all_have(Rows rows, std::size_t n_columns) {
-  return !rows.empty() && std::all_of(rows.begin(), rows.end(), [&](const Row& row) { return row.size() == n_columns; });
+  const auto has_n = [&](const Row& row) { return row.size() == n_columns; };
+  return !rows.empty() && std::all_of(rows.begin(), rows.end(), has_n);
 }
 
 bool is_last_row(const double* row) { return row[0] == 0.0 && row[1] == 0.0 && row[2] == 0.0 && row[3] == 1.0; }

@@ -29,7 +29,8 @@ Vertex parse_vertex(const LineReader& lines, std::string_view rest) {
 RowStage::Row row_of(const Vertex& vertex) {
   RowStage::Row row{};
   std::copy_n(vertex.values.begin(), 3, row.xyz.begin());
-  if (vertex.colored()) std::copy_n(vertex.values.begin() + static_cast<std::ptrdiff_t>(vertex.n) - 3, 3, row.rgb.begin());
+  const std::size_t color = vertex.n - 3;
+  if (vertex.colored()) std::copy_n(&vertex.values[color], 3, row.rgb.begin());
   return row;
 }
 
@@ -43,10 +44,12 @@ class VertexLines {
     for (std::string_view line; lines_.next(line);) {
       const std::string_view keyword = next_token(line);
       if (keyword == "f" || keyword == "fo") {
-        lines_.fail("is a mesh (OBJ with faces), not a point cloud; sample points on its surface first (CloudCompare "
-                    "and Open3D do)");
+        lines_.source().fail(
+            "is a mesh (OBJ; line {} holds the first face), not a point cloud; sample points on its surface first "
+            "(CloudCompare and Open3D do)",
+            lines_.number());
       }
-      if (keyword == "curv" || keyword == "surf") lines_.fail("holds free-form surfaces, not points");
+      if (keyword == "curv" || keyword == "surf") lines_.source().fail("holds free-form surfaces, not points");
       if (keyword != "v") continue;
       vertex = parse_vertex(lines_, line);
       if (n_values_ == 0) n_values_ = vertex.n;

@@ -52,20 +52,22 @@ FileStart start_of(std::string name, std::string_view text) {
 
 TEST(ColmapText, OtherTextIsNotTakenForIt) {
   // Equal ids, fractions in the colors, an odd track, no track at all, whole coordinates.
-  EXPECT_FALSE(is_colmap_text(start_of("a.txt", "1 2.5 3 4 5 6 7 8 9 10\n1 2.5 3 4 5 6 7 8 9 10\n1 2 3 4 5 6 7 8 9 1\n")));
-  EXPECT_FALSE(is_colmap_text(start_of("a.txt", "1 2.5 3 4 .5 6 7 8 9 1\n2 2.5 3 4 5 6 7 8 9 1\n3 2 3 4 5 6 7 8 9 1\n")));
-  EXPECT_FALSE(is_colmap_text(start_of("a.txt", "1 2.5 3 4 5 6 7 8 9\n2 2.5 3 4 5 6 7 8 9\n3 2.5 3 4 5 6 7 8 9\n")));
-  EXPECT_FALSE(is_colmap_text(start_of("a.txt", "1 2.5 3 4 5 6 7 8\n2 2.5 3 4 5 6 7 8\n3 2.5 3 4 5 6 7 8\n")));
-  EXPECT_FALSE(is_colmap_text(start_of("a.txt", "1 2 3 4 5 6 7 8 9 1\n2 2 3 4 5 6 7 8 9 1\n3 2 3 4 5 6 7 8 9 1\n")));
+  for (const char* text : {"1 2.5 3 4 5 6 7 8 9 10\n1 2.5 3 4 5 6 7 8 9 10\n1 2 3 4 5 6 7 8 9 1\n",
+                           "1 2.5 3 4 .5 6 7 8 9 1\n2 2.5 3 4 5 6 7 8 9 1\n3 2 3 4 5 6 7 8 9 1\n",
+                           "1 2.5 3 4 5 6 7 8 9\n2 2.5 3 4 5 6 7 8 9\n3 2.5 3 4 5 6 7 8 9\n",
+                           "1 2.5 3 4 5 6 7 8\n2 2.5 3 4 5 6 7 8\n3 2.5 3 4 5 6 7 8\n",
+                           "1 2 3 4 5 6 7 8 9 1\n2 2 3 4 5 6 7 8 9 1\n3 2 3 4 5 6 7 8 9 1\n"}) {
+    EXPECT_FALSE(is_colmap_text(start_of("a.txt", text))) << text;
+  }
   EXPECT_TRUE(is_colmap_text(start_of("points3d.txt", "1 2.5 3 4 5 6 7 8\n")));
 }
 
 TEST(ColmapText, AnotherCountThanTheCommentsIsSaid) {
   const auto file = read_content("points3D.txt", with_comments("# Number of points: 12, mean track length: 3.0\n"
-                                                               "1 1.5 2 3 4 5 6 0.5 1 2\n"));
+                                                               "1 1.5 2 3 250 150 60 0.5 1 2\n"));
   ASSERT_EQ(file.info.warnings.size(), 1U);
   EXPECT_THAT(file.info.warnings[0].message, AllOf(HasSubstr("12 points"), HasSubstr("holds 1")));
-  EXPECT_TRUE(read_content("a.txt", with_comments("# Number of points: 1, mean track length: 0\n1 2 3 4 5 6 7 0\n"))
+  EXPECT_TRUE(read_content("a.txt", with_comments("# Number of points: 1, mean track length: 0\n1 2 3 4 250 6 7 0\n"))
                   .info.warnings.empty());
 }
 
@@ -145,7 +147,7 @@ TEST(ColmapBinary, CountsAreCheckedAgainstTheFile) {
 }
 
 TEST(ColmapModel, TheOtherFilesAreNamed) {
-  EXPECT_THAT(refusal("cameras.txt", "# Camera list with one line of data per camera:\n1 PINHOLE 640 480 500 500 320 240\n"),
+  EXPECT_THAT(refusal("cameras.txt", "# Camera list with one line of data per camera:\n1 PINHOLE 640 480 5 5 320 240\n"),
               AllOf(HasSubstr("cameras of a COLMAP model"), HasSubstr("points3D.txt")));
   EXPECT_THAT(refusal("x.txt", "# Image list with two lines of data per image:\n1 1 0 0 0 0 0 0 1 a.jpg\n\n"),
               HasSubstr("images of a COLMAP model"));

@@ -44,8 +44,8 @@ TEST(FileFormat, ExtensionDecidesWhereContentDoesNot) {
 }
 
 TEST(FileFormat, NamesWhatCanBeRead) {
-  EXPECT_THAT(refusal("a.xyz", "\x01\x02\x00\xff"s),
-              AllOf(HasSubstr("of no known format"), HasSubstr("PLY, PCD, LAS, NPY, NPZ, PTS, PTX"), HasSubstr("text")));
+  const std::string message = refusal("a.xyz", "\x01\x02\x00\xff"s);
+  EXPECT_THAT(message, AllOf(HasSubstr("of no known format"), HasSubstr("PLY, PCD, LAS, NPY, NPZ, PTS, PTX")));
 }
 
 TEST(FileFormat, ProseIsNoPointCloud) {

@@ -36,7 +36,8 @@ std::string zip(std::string_view member) {
 TEST(ForeignFormats, SplatsInAnyFileLeadToPoints) {
   std::string header = "NGSP";
   header += std::string(60, '\1');
-  const std::string ply = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
   const std::pair<const char*, std::string> kFiles[] = {
       {"a.ply", ply + "property float f_dc_0\nend_header\n1 2 3 4\n"},
       {"a.ply", ply + "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float f_dc_0\nproperty "
@@ -123,9 +124,9 @@ TEST(ForeignFormats, NamedByContent) {
 }
 
 TEST(ForeignFormats, NamedByExtension) {
-  const std::pair<const char*, const char*> kFiles[] = {{"a.FLS", "FARO"},      {"a.rcp", "ReCap"},  {"a.rcs", "ReCap"},
-                                                        {"a.las", "LASF"},      {"a.laz", "LASF"},   {"a.stl", "mesh (STL)"},
-                                                        {"a.off", "mesh (OFF)"}, {"a.rxp", "RIEGL"}, {"a.pkl", "pickle"}};
+  const std::pair<const char*, const char*> kFiles[] = {
+      {"a.FLS", "FARO"}, {"a.rcp", "ReCap"},      {"a.rcs", "ReCap"},      {"a.las", "LASF"},  {"a.laz", "LASF"},
+      {"a.rxp", "RIEGL"}, {"a.stl", "mesh (STL)"}, {"a.off", "mesh (OFF)"}, {"a.pkl", "pickle"}};
   for (const auto& [name, message] : kFiles) {
     EXPECT_THAT(refusal(name, "\x01\x02\x03hello"), HasSubstr(message)) << name;
   }

@@ -10,9 +10,9 @@ namespace {
 using Rows = std::vector<std::vector<double>>;
 using ::testing::HasSubstr;
 
-std::string what(const Rows& rows, bool complete = true) { return not_a_cloud(rows, complete).value_or("may be points"); }
-
 constexpr const char* kMayBePoints = "may be points";
+
+std::string what(const Rows& rows, bool complete = true) { return not_a_cloud(rows, complete).value_or(kMayBePoints); }
 
 // cos and sin of 0.1
 const double kCos = std::cos(0.1);

@@ -33,7 +33,7 @@ TEST(ObjPoints, TheWeightIsNotUsedAndSaid) {
 
 TEST(ObjPoints, AMeshIsNamed) {
   EXPECT_THAT(refusal("a.obj", "v 1 2 3\nv 4 5 6\nv 7 8 10\nf 1 2 3\n"),
-              AllOf(HasSubstr("line 4: is a mesh"), HasSubstr("sample points on its surface")));
+              AllOf(HasSubstr("is a mesh (OBJ; line 4"), HasSubstr("sample points on its surface")));
   EXPECT_THAT(refusal("a.obj", "f 1//1 2//2 3//3\nv 1 2 3\n"), HasSubstr("is a mesh"));
 }
 

@@ -21,8 +21,8 @@ std::string all_warnings(const PointCloudFile& file) {
   return warnings;
 }
 
-// A quarter turn about z, then (100, 200, 300): x y z becomes 100 - y, 200 + x, 300 + z. As row vectors, the rows of the
-// matrix are what x, y and z become.
+// A quarter turn about z, then (100, 200, 300): x y z becomes 100 - y, 200 + x, 300 + z. As rows, the axes of the scan
+// in the world.
 constexpr std::string_view kQuarterTurn = "0 1 0 0\n-1 0 0 0\n0 0 1 0\n100 200 300 1\n";
 
 TEST(PtxReader, MovesTheScanByTheRowsOfItsMatrix) {

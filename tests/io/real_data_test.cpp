@@ -68,6 +68,12 @@ TEST_F(RealData, PtxScans) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_LT((two.cloud.world(i) - two.cloud.world(i + 4)).norm(), 1e-3);
 }
 
+TEST_F(RealData, OpenSfmPoints) {
+  const auto file = read("opensfm_berlin/reconstruction_example.json");
+  EXPECT_EQ(file.info.points, 1430U);
+  EXPECT_EQ(color_type_name(file.cloud.colors), "u8");
+}
+
 TEST_F(RealData, AnObjWithFacesIsNamed) {
   try {
     read("formats_text/1.2-with-color.obj");
