@@ -286,8 +286,10 @@ void ColorStore::settle(FileInfo& info) {
         }
       },
       colors_);
-  if (info.color_scale.empty()) info.color_scale = color_scale_text(colors_, white_, declaration_);
-  if (std::string note = color_scale_note(colors_, white_, declaration_); !note.empty()) info.notes.push_back(note);
+  if (info.color_scale.empty()) {
+    info.color_scale = color_scale_text(colors_, white_, declaration_);
+    if (std::string note = color_scale_note(colors_, white_, declaration_); !note.empty()) info.notes.push_back(note);
+  }
   cut_overshoots(info);
 }
 

@@ -125,8 +125,8 @@ bool names_poses(std::span<const std::string> names) {
 }
 
 std::string_view pose_hint() {
-  return "holds poses (time x y z qx qy qz qw, TUM's layout), not points; --ref-trajectory and --est-trajectory take "
-         "them";
+  return "holds poses (time x y z qx qy qz qw, TUM's layout), not points; cmap_align --method trajectory takes "
+         "them, and cmap_eval --ref-trajectory and --est-trajectory";
 }
 
 }  // namespace cmap

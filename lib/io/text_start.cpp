@@ -17,9 +17,16 @@ std::string first_column(std::string_view line) {
   return next_column(line, column) ? std::string(column) : "";
 }
 
-bool starts_with_number(std::string_view line, const RowFormat& format) {
+/// A row begins with a number, or, behind a label, has enough of them for a point.
+bool is_row(std::string_view line) {
+  constexpr std::size_t kFewest = 3;
+  std::size_t n_numbers = 0, n = 0;
   double value = 0.0;
-  return parse_column(first_column(line), format, value);
+  for (std::string_view column; next_column(line, column); ++n) {
+    if (!parse_column(column, {}, value)) continue;
+    if (n == 0 || ++n_numbers == kFewest) return true;
+  }
+  return false;
 }
 
 /// A line that announces how many points follow (PTS, CloudCompare, survey exports).
@@ -38,7 +45,7 @@ void read_lines_before_rows(LineReader& lines, TextStart& start, std::string_vie
       start.comments.push_back({lines.number(), std::string(without_comment_mark(line))});
     } else if (!start.count && count_of(line)) {
       start.count = count_of(line);
-    } else if (starts_with_number(line, {})) {
+    } else if (is_row(line)) {
       return;
     } else if (start.header) {
       lines.fail("'{}' is not a number (taken for text, x y z [r g b], as no other format was recognized)",

@@ -74,7 +74,9 @@ TEST(ColorScale, EveryTypeAndScaleOfOneCard) {
   expect_card(read_content("a.ply", ply_of("uchar", mapped<U8>(same))), 0.0, "uchar");
   expect_card(read_content("a.ply", ply_of("ushort", mapped<U16>(same))), 0.0, "8 bit in ushort");
   expect_card(read_content("a.ply", ply_of("ushort", mapped<U16>([](int v) { return 257 * v; }))), 0.0, "x 257");
-  expect_card(read_content("a.ply", ply_of("ushort", mapped<U16>([](int v) { return 256 * v; }))), 0.0, "x 256");
+  const auto times_256 = read_content("a.ply", ply_of("ushort", mapped<U16>([](int v) { return 256 * v; })));
+  expect_card(times_256, 0.0, "x 256");
+  EXPECT_EQ(times_256.info.notes.size(), 1U) << "said once";
   expect_card(read_content("a.ply", ply_of("short", mapped<std::int16_t>(same))), 0.0, "short");
   expect_card(read_content("a.ply", ply_of("int", mapped<std::int32_t>(same))), 0.0, "int");
   expect_card(read_content("a.ply", ply_of("uint", mapped<std::uint32_t>([](int v) { return 257 * v; }))), 0.0, "uint x 257");

@@ -59,7 +59,8 @@ TEST(TextReader, HeadersInUse) {
        {"//X Y Z R G B\n1\n1 2 3 10 20 30\n", "# ID EASTING NORTHING HEIGHT R G B\n7 1 2 3 10 20 30\n",
         "Easting\tNorthing\tHeight\tRed\tGreen\tBlue\n1\t2\t3\t10\t20\t30\n",
         "Slot ID,Error Code,X,Y,Z,Red,Green,Blue\n1,0,1,2,3,10,20,30\n", ",x,y,z,red,green,blue\n0,1,2,3,10,20,30\n",
-        "X [m];Y [m];Z [m];Intensity;R;G;B\n1;2;3;;10;20;30\n", "X,Y,Z,Classification,R,G,B\n1,2,3,tree,10,20,30\n"}) {
+        "X [m];Y [m];Z [m];Intensity;R;G;B\n1;2;3;;10;20;30\n", "X,Y,Z,Classification,R,G,B\n1,2,3,tree,10,20,30\n",
+        "Class Name,Pos X,Pos Y,Pos Z,Red,Green,Blue\ntree,1,2,3,10,20,30\n"}) {
     const auto file = read_content("a.csv", text);
     EXPECT_EQ(point(file, 0), Eigen::Vector3d(1, 2, 3)) << text;
     EXPECT_EQ(file.cloud.colors, Colors(Array<Rgb8>{{10, 20, 30}})) << text;
