@@ -1,5 +1,6 @@
 #include "io/npy_points.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -35,19 +36,22 @@ NumberTable sample_of(const NpyArray& array, const PointTable& table, ScalarType
   return sample;
 }
 
-/// x y z and a unit quaternion, behind a time or not; black with an alpha of one is none.
+/// Whether a unit quaternion stands in the last four columns, behind x y z or behind a time, x y z. Black with an alpha
+/// of one is none, nor is a normal with a curvature of nearly zero.
 bool are_poses(const NumberTable& sample) {
   constexpr double kTolerance = 1e-3;
   if (sample.columns != 7 && sample.columns != 8) return false;
+  const bool timed = sample.columns == 8;
   const std::size_t first = sample.columns - 4;
-  bool all_identity = true;
+  bool all_identity = true, all_normals = true;
   for (std::size_t row = 0; row < sample.rows(); ++row) {
-    double sq_length = 0.0;
-    for (std::size_t k = 0; k < 4; ++k) sq_length += sample.at(row, first + k) * sample.at(row, first + k);
-    if (!(std::abs(sq_length - 1.0) < kTolerance)) return false;
-    all_identity = all_identity && std::abs(sample.at(row, first + 3)) == 1.0;
+    const Eigen::Map<const Eigen::Vector4d> q(&sample.values[row * sample.columns + first]);
+    if (!(std::abs(q.norm() - 1.0) < kTolerance)) return false;
+    if (timed && row > 0 && !(sample.at(row, 0) > sample.at(row - 1, 0))) return false;
+    all_identity = all_identity && q[3] == 1.0;
+    all_normals = all_normals && q[3] >= 0.0 && std::abs(q.head<3>().norm() - 1.0) < kTolerance;
   }
-  return !all_identity;
+  return !all_normals && (timed || !all_identity);
 }
 
 void note_shape(const NpyArray& array, const PointTable& table, FileInfo& info) {

@@ -104,6 +104,10 @@ TEST(NpyCloud, TrajectoriesAreNamed) {
   EXPECT_THAT(refused("'<f8'", "(2, 7)", rows_with<double>({{0, 0, 0, 1}, {0, s, 0, -s}})), HasSubstr("a trajectory"));
   const std::vector<double> tum{10, 1, 2, 3, 0, 0, 0, 1, 11, 2, 2, 3, 0, 0, s, s};
   EXPECT_THAT(refused("'<f8'", "(2, 8)", raw(tum)), HasSubstr("a trajectory"));
+  const std::vector<double> straight{10, 1, 2, 3, 0, 0, 0, 1, 11, 2, 2, 3, 0, 0, 0, 1};
+  EXPECT_THAT(refused("'<f8'", "(2, 8)", raw(straight)), HasSubstr("a trajectory"));
+  // Normals and their curvature are none.
+  expect_samples(read("'<f8'", "(2, 7)", rows_with<double>({{0, s, -s, 0.001}, {0.6, -0.8, 0, 0.002}})), 2, false);
 }
 
 TEST(NpyCloud, OtherShapesAreRefused) {
