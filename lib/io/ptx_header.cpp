@@ -42,9 +42,10 @@ Eigen::Matrix4d read_matrix(LineReader& lines) {
     const auto values = header_numbers<4>(lines, "the 4x4 matrix");
     for (int k = 0; k < 4; ++k) matrix(row, k) = values[static_cast<std::size_t>(k)];
   }
+  constexpr double kExact = 1e-6;  // of printed digits
   const Eigen::Vector4d last(0, 0, 0, 1);
-  if (!matrix.col(3).isApprox(last, 1e-9)) {
-    if (matrix.row(3).isApprox(last.transpose(), 1e-9)) {
+  if (!matrix.col(3).isApprox(last, kExact)) {
+    if (matrix.row(3).isApprox(last.transpose(), kExact)) {
       lines.fail("the matrix has its translation in the last column; PTX has it in the last row");
     }
     lines.fail("the last column of the matrix is not 0 0 0 1");

@@ -107,7 +107,7 @@ void report(const PtxScan& scan, const ScanRows& rows, FileInfo& info) {
   }
   if (rows.nearest_sq_m2 <= kFarthestView_m * kFarthestView_m) {
     info.sensor_positions.push_back(scan.sensor);
-  } else if (rows.n > 0) {
+  } else if (std::isfinite(rows.nearest_sq_m2)) {
     info.notes.push_back(fmt::format("scan {}: its scanner is not known (the header's place is far from all points)",
                                      scan.index));
   }
@@ -149,8 +149,8 @@ PointCloud read_ptx(ByteSource& source, FileInfo& info) {
     ScanRows rows;
     more = points.read_scan(scan, rows, line);
     report(scan, rows, info);
+    if (index > 1) info.format = fmt::format("PTX, {} scans", index);
   }
-  if (info.sensor_positions.size() > 1) info.format = fmt::format("PTX, {} scans", info.sensor_positions.size());
   return points.finish(info);
 }
 
