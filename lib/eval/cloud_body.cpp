@@ -14,12 +14,13 @@ constexpr double kStrayDiagonals = 10.0;
 
 /// Box without the outermost hundredth (one point at least) on either side of every axis.
 Box3d core_of(const PointCloud& cloud) {
-  const std::vector<std::size_t> sample = sampled_indices(cloud.size(), kSample);
+  std::vector<Eigen::Vector3f> sample;
+  for (const std::size_t i : sampled_indices(cloud.size(), kSample)) sample.push_back(cloud.positions[i]);
   const std::size_t cut = std::max<std::size_t>(1, sample.size() / 100);
   std::vector<float> values(sample.size());
   Box3d core;
   for (int axis = 0; axis < 3; ++axis) {
-    std::ranges::transform(sample, values.begin(), [&](std::size_t i) { return cloud.positions[i][axis]; });
+    std::ranges::transform(sample, values.begin(), [&](const Eigen::Vector3f& p) { return p[axis]; });
     const auto low = values.begin() + static_cast<std::ptrdiff_t>(cut);
     const auto high = values.end() - static_cast<std::ptrdiff_t>(cut) - 1;
     std::nth_element(values.begin(), low, values.end());

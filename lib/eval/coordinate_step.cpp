@@ -31,13 +31,17 @@ constexpr int kFloat32Bits = 24, kFloat16Bits = 11;
 /// Distance of neighboring floating-point numbers of that many bits at x.
 double float_step(double x, int bits) { return x == 0.0 ? 0.0 : std::ldexp(1.0, std::ilogb(x) + 1 - bits); }
 
-Axis sampled_axis(const PointCloud& cloud, int axis) {
-  Axis sampled;
+std::array<Axis, 3> sampled_axes(const PointCloud& cloud) {
+  std::array<Axis, 3> axes;
   for (const std::size_t i : sampled_indices(cloud.size(), kSample)) {
-    sampled.world.push_back(cloud.world(i)[axis]);
-    sampled.rounding_m.push_back(float_step(static_cast<double>(cloud.positions[i][axis]), kFloat32Bits));
+    const Eigen::Vector3d offset = cloud.positions[i].cast<double>();
+    for (int a = 0; a < 3; ++a) {
+      Axis& axis = axes[static_cast<std::size_t>(a)];
+      axis.world.push_back(cloud.origin[a] + offset[a]);
+      axis.rounding_m.push_back(float_step(offset[a], kFloat32Bits));
+    }
   }
-  return sampled;
+  return axes;
 }
 
 /// The value that a tenth of them reach, so that single far points do not decide.
@@ -115,7 +119,7 @@ void keep_coarser(std::optional<CoordinateStep>& coarsest, double step_m, const 
 std::optional<CoordinateStep> coarse_step(const PointCloud& cloud, double limit_m) {
   using enum CoordinateStep::Cause;
   if (cloud.size() < kFewest) return std::nullopt;
-  const std::array<Axis, 3> axes{sampled_axis(cloud, 0), sampled_axis(cloud, 1), sampled_axis(cloud, 2)};
+  const std::array<Axis, 3> axes = sampled_axes(cloud);
   const bool float16 = all_of_bits(axes, kFloat16Bits), float32 = all_of_bits(axes, kFloat32Bits);
   std::optional<CoordinateStep> coarsest;
   for (int a = 0; a < 3; ++a) {

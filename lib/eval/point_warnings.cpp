@@ -94,8 +94,11 @@ double finest_step_needed_m(const EvaluationOptions& options) {
 SampledSpacing sampled_spacing(const Bvh& index) {
   constexpr std::size_t kNeighbors = 8;
   Array<std::uint32_t> slots;
-  for (const std::size_t slot : sampled_indices(index.points.size, kSample)) {
-    slots.push_back(static_cast<std::uint32_t>(slot));
+  // Whole blocks, as neighbors are searched together.
+  for (const std::size_t block : sampled_indices(index.points.blocks.size(), kSample / kBlockSize)) {
+    for (std::size_t slot = block * kBlockSize; slot < std::min((block + 1) * kBlockSize, index.points.size); ++slot) {
+      slots.push_back(static_cast<std::uint32_t>(slot));
+    }
   }
   const Array<std::uint32_t> neighbors = find_k_nearest(index, chosen_points(index.points, slots), kNeighbors);
   std::vector<double> distances_m;

@@ -67,7 +67,7 @@ void check_voxels(const char* option, double size_m, double default_m, const Sha
 
 void check_voxels_of_metrics(const EvaluationOptions& options, const MetricSelection& selection, const Shape& map) {
   const EvaluationOptions defaults;
-  if (selection.contains("color_consistency")) {
+  if (selection.contains("color_consistency") && map.cloud.has_color()) {
     check_voxels("ccs-voxel", options.ccs_voxel_m, defaults.ccs_voxel_m, map);
   }
   if (selection.needs_gaussians) check_voxels("awd-voxel", options.awd_voxel_m, defaults.awd_voxel_m, map);

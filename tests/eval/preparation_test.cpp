@@ -157,6 +157,12 @@ TEST(Preparation, NamesThePointThatIsTooFarToCountVoxels) {
   }
 }
 
+TEST(Preparation, FarPointsWithoutColorNeedNoVoxelsOfIt) {
+  PointCloud bare = square_with({5e8f, 0, 0});
+  bare.colors = {};
+  EXPECT_NO_THROW(prepared(square_with({0, 0, 0}), bare));
+}
+
 TEST(Preparation, VoxelsThatNobodyChoseAreNotToBlame) {
   const PointCloud wide = gray_map({{0, 0, 0}, {6e8f, 0, 0}});
   EXPECT_THAT(refusal_of<MapError>([&] { prepared(kCorners, wide); }), HasSubstr("are they in meters?"));

@@ -44,10 +44,11 @@ class BadMaps(CmapEval):
         self.refused(UNSUPPORTED, "time", near, near, "--align", "trajectory", *trajectories)
 
     def test_one_point_too_far_to_count_voxels(self):
-        near = [(0.1 * (i % 20), 0.1 * (i // 20), 0) for i in range(400)]
-        reference = self.input("near.ply", ply(near))
+        fields = ("x", "y", "z", "red", "green", "blue")
+        near = [(0.1 * (i % 20), 0.1 * (i // 20), 0, 0.25, 0.5, 0.001 * i) for i in range(400)]
+        reference = self.input("near.ply", ply(near, fields))
         for far in ((-7e8, 0, 0), (0, 9e8, 0), (6e8, 6e8, 6e8)):
-            stray = self.input("stray.ply", ply(near[:100] + [far] + near[100:]))
+            stray = self.input("stray.ply", ply(near[:100] + [(*far, 0.25, 0.5, 0.75)] + near[100:], fields))
             says = [f"{stray}: point 101 of 401, at (", "far to count voxels"]
             self.refused(INPUT, says, reference, stray)
             self.refused(INPUT, says, stray, reference)
