@@ -170,8 +170,13 @@ void CloudBuilder::drop_many_zeros() {
   const bool many =
       n_at_zero_ >= kManyZeros && static_cast<double>(n_at_zero_) >= kManyZerosShare * static_cast<double>(kept_);
   if (!many) {
-    box_.min = box_.min.cwiseMin(Eigen::Vector3d::Zero());
-    box_.max = box_.max.cwiseMax(Eigen::Vector3d::Zero());
+    // A few far from all others do not choose the origin: the others would lose their digits to them.
+    constexpr double kStrayDiagonals = 10.0;
+    const Box3d with_zero{box_.min.cwiseMin(Eigen::Vector3d::Zero()), box_.max.cwiseMax(Eigen::Vector3d::Zero())};
+    const double diagonal_m = (box_.max - box_.min).norm();
+    const bool stray = std::isfinite(diagonal_m) && diagonal_m > 0.0 &&
+                       (with_zero.max - with_zero.min).norm() > kStrayDiagonals * diagonal_m;
+    if (!stray) box_ = with_zero;
     return;
   }
   const Array<std::uint8_t> keep = std::visit([](auto& positions) { return positions.drop_zeros(); }, positions_);
