@@ -20,7 +20,9 @@ using cmap::ExitCode;
 constexpr const char* kDescription =
     "Puts saved reports of cmap_eval side by side: one row for each metric, one column for each report, best and "
     "second\n"
-    "best marked. Refuses reports whose numbers do not compare: other parameters, definitions or reference map.";
+    "best marked. Refuses reports whose numbers do not compare: other parameters, definitions or reference map, as "
+    "far\n"
+    "as they bear on --metrics; says where reports come from different versions of cmap.";
 
 constexpr const char* kExample =
     "Examples:\n"
@@ -88,7 +90,10 @@ ExitCode run(Arguments arguments) {
   std::vector<cmap::SavedReport> reports;
   for (const std::string& path : arguments.reports) reports.push_back(cmap::read_report(path));
   cmap::name_reports(reports, arguments.names);
-  cmap::require_comparable(reports);
+  cmap::require_comparable(reports, options);
+  for (const std::string& note : cmap::version_notes(reports, options)) {
+    fmt::print(stderr, "cmap_compare: warning: {}\n", note);
+  }
   const std::string text = cmap::format_comparison(reports, options, kFormats.at(arguments.format));
   cmap::OutputFiles files;
   files.add(arguments.figure,

@@ -1,18 +1,17 @@
-// cmap_eval REF EST: every metric of one pair of maps.
+// cmap_eval REF EST: every metric of one pair of maps; cmap_eval MAP: of one map alone.
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 #include "cmap/align/trajectory.hpp"
 #include "cmap/core/parallel.hpp"
-#include "cmap/core/simd.hpp"
 #include "cmap/eval/map_error.hpp"
+#include "cmap/eval/map_evaluation.hpp"
 #include "cmap/eval/point_errors.hpp"
 #include "cmap/eval/protocol.hpp"
 #include "cmap/eval/requirement.hpp"
@@ -24,23 +23,26 @@
 #include "evaluation_arguments.hpp"
 #include "files.hpp"
 #include "program.hpp"
+#include "run_clock.hpp"
 
 namespace {
 
 using cmap::ExitCode;
 
 constexpr const char* kDescription =
-    "Evaluates an estimated point-cloud map against a reference: color, geometry and distribution metrics.\n"
+    "Evaluates an estimated point-cloud map against a reference: color, geometry and distribution metrics. Of one map\n"
+    "alone, what needs no reference: color consistency, mean map entropy, point spacing.\n"
     "Reads PLY, PCD, LAS, NPY, NPZ and text.";
 
 constexpr const char* kExample =
-    "Example:\n"
+    "Examples:\n"
     "  cmap_eval data_samples/town/reference.ply data_samples/town/estimate.ply -o report.json --require 'LCR>=0.2'\n"
+    "  cmap_eval data_samples/town/estimate.ply -o map.json --html map.html --require 'point_spacing<=0.3'\n"
     "\n"
     "Exit codes: 0 done; 1 a --require did not hold; 2 wrong usage or configuration; 3 an input is missing, malformed\n"
     "or without a finite point; 4 the inputs do not support what was asked; 70 internal error.";
 
-/// The command line as given.
+/// The command line as given; of one map, `estimate` is empty.
 struct Arguments {
   std::string reference, estimate;
   std::string output, html, figure, format = "table", config, preset, transform, initial;
@@ -54,8 +56,10 @@ struct Arguments {
 };
 
 void add_options(CLI::App& app, Arguments& a) {
-  app.add_option("REF", a.reference, "reference map")->required()->type_name("FILE");
-  app.add_option("EST", a.estimate, "estimated map")->required()->type_name("FILE");
+  app.add_option("REF", a.reference, "reference map; without EST, the map to evaluate by itself")
+      ->required()
+      ->type_name("FILE");
+  app.add_option("EST", a.estimate, "estimated map")->type_name("FILE");
   app.add_option("-o,--output", a.output, "write the JSON report here")->type_name("FILE");
   app.add_option("--html", a.html, "page with everything: tables, curves, both maps in 3-D; implies --lcr-curve")
       ->type_name("FILE.html");
@@ -91,9 +95,9 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("--export-reference-errors", a.reference_errors, "the same for the reference, with LCR hits")
       ->type_name("FILE.ply");
   cmap::add_common_options(app, a.common, "no table, no progress");
-  cmap::refuse_empty(
-      app, {"--output", "--html", "--figure", "--config", "--preset", "--transform", "--initial", "--ref-trajectory",
-            "--est-trajectory", "--times", "--observed-from", "--export-errors", "--export-reference-errors"});
+  cmap::refuse_empty(app, {"REF", "EST", "--output", "--html", "--figure", "--config", "--preset", "--transform",
+                           "--initial", "--ref-trajectory", "--est-trajectory", "--times", "--observed-from",
+                           "--export-errors", "--export-reference-errors"});
   a.evaluation.add_to(app, [](std::string_view) { return true; });
 }
 
@@ -102,12 +106,36 @@ cmap::EvaluationOptions resolve_options(const Arguments& arguments) {
   if (!arguments.preset.empty()) cmap::apply_preset(options, arguments.preset);
   if (!arguments.config.empty()) cmap::apply_config_file(options, arguments.config);
   arguments.evaluation.apply_to(options);
+  return options;
+}
+
+cmap::EvaluationOptions pair_options(const Arguments& arguments) {
+  cmap::EvaluationOptions options = resolve_options(arguments);
   if (!arguments.html.empty()) options.lcr_curve = true;
   if (!arguments.sensor.empty()) options.observed = cmap::Observed::kSensor;
   if (arguments.sensor.empty() && options.observed == cmap::Observed::kSensor) {
     throw cmap::UsageError("--observed sensor needs --observed-from");
   }
   return options;
+}
+
+/// Files that only two maps have a use for.
+void refuse_files_of_pairs(const Arguments& a) {
+  const std::pair<const char*, const std::string*> files[] = {{"--transform", &a.transform},
+                                                              {"--initial", &a.initial},
+                                                              {"--ref-trajectory", &a.reference_trajectory},
+                                                              {"--est-trajectory", &a.estimate_trajectory},
+                                                              {"--times", &a.times},
+                                                              {"--observed-from", &a.sensor},
+                                                              {"--figure", &a.figure},
+                                                              {"--export-errors", &a.estimate_errors},
+                                                              {"--export-reference-errors", &a.reference_errors}};
+  for (const auto& [option, file] : files) {
+    if (file->empty()) continue;
+    const char* way_out = file == &a.figure ? "; cmap_render MAP -o FILE draws one map" : "";
+    throw cmap::UsageError(
+        fmt::format("{} needs two maps, a reference and an estimate; here is only {}{}", option, a.reference, way_out));
+  }
 }
 
 void append(const std::vector<cmap::Warning>& more, std::vector<cmap::Warning>& warnings) {
@@ -157,7 +185,7 @@ cmap::ProtocolInputs protocol_inputs(const Arguments& a, const cmap::EvaluationO
 
 /// What is wrong with the points of a map is said of its file.
 template <class Evaluate>
-cmap::Evaluation blaming_files(const Arguments& arguments, Evaluate&& evaluate) {
+auto blaming_files(const Arguments& arguments, Evaluate&& evaluate) {
   try {
     return evaluate();
   } catch (const cmap::MapError& error) {
@@ -166,7 +194,8 @@ cmap::Evaluation blaming_files(const Arguments& arguments, Evaluate&& evaluate) 
   }
 }
 
-bool check_requirements(const std::vector<cmap::Requirement>& requirements, const cmap::Evaluation& evaluation) {
+template <class Evaluated>
+bool check_requirements(const std::vector<cmap::Requirement>& requirements, const Evaluated& evaluation) {
   bool all_hold = true;
   for (const cmap::Requirement& requirement : requirements) {
     const cmap::RequirementOutcome outcome = cmap::check(requirement, evaluation);
@@ -197,61 +226,77 @@ void check_outputs(const Arguments& a) {
 }
 
 /// Prints and writes everything: all outputs or none, and none before the last one is complete.
-void deliver(const Arguments& arguments, const cmap::Evaluation& evaluation, const nlohmann::ordered_json& report,
-             const std::optional<cmap::FigureModule>& figures) {
+template <class Evaluated>
+void deliver(const Arguments& arguments, const Evaluated& evaluation, const nlohmann::ordered_json& report,
+             cmap::OutputFiles files) {
   const std::string report_text = report.dump(2) + "\n";
-  cmap::OutputFiles files;
-  files.add(arguments.estimate_errors, [&](cmap::OutputFile& file) { cmap::write_estimate_errors(evaluation, file); });
-  files.add(arguments.reference_errors,
-            [&](cmap::OutputFile& file) { cmap::write_reference_errors(evaluation, file); });
   files.add(arguments.html, [&](cmap::OutputFile& file) { cmap::write_html_report(report, evaluation, file); });
-  files.add(arguments.figure, [&](cmap::OutputFile& file) { figures->write(evaluation, arguments.figure, file); });
   files.add(arguments.output, [&](cmap::OutputFile& file) { file.write(report_text); });
   if (!arguments.common.quiet) cmap::print(arguments.format == "json" ? report_text : cmap::format_table(report));
   files.commit();
 }
 
+ExitCode exit_code(bool requirements_hold) {
+  return requirements_hold ? ExitCode::kDone : ExitCode::kRequirementFailed;
+}
+
+ExitCode run_pair(const Arguments& arguments, cmap::RunClock& clock) {
+  std::optional<cmap::FigureModule> figures;
+  if (!arguments.figure.empty()) figures.emplace().check_name(arguments.figure);
+  const cmap::EvaluationOptions options = pair_options(arguments);
+  std::vector<cmap::Requirement> requirements;
+  for (const std::string& text : arguments.requirements) requirements.push_back(cmap::parse_requirement(text, options));
+  const cmap::ProtocolInputs inputs = protocol_inputs(arguments, options);
+
+  auto [reference, estimate] = clock.timed_reading(
+      [&] { return cmap::read_both(arguments.reference, arguments.estimate, cmap::read_options(options, true)); });
+  const cmap::InputDescription about_reference = describe(reference), about_estimate = describe(estimate);
+  cmap::Evaluation evaluation = blaming_files(arguments, [&] {
+    return cmap::evaluate_by_protocol(std::move(reference.cloud), std::move(estimate.cloud), options, inputs,
+                                      clock.progress());
+  });
+  cmap::warn_about_shifts(evaluation, arguments.reference, arguments.estimate);
+  const auto report =
+      cmap::make_report(about_reference, about_estimate, evaluation, clock.description_after(evaluation));
+  const bool requirements_hold = check_requirements(requirements, evaluation);
+
+  cmap::OutputFiles files;
+  files.add(arguments.estimate_errors, [&](cmap::OutputFile& file) { cmap::write_estimate_errors(evaluation, file); });
+  files.add(arguments.reference_errors,
+            [&](cmap::OutputFile& file) { cmap::write_reference_errors(evaluation, file); });
+  files.add(arguments.figure, [&](cmap::OutputFile& file) { figures->write(evaluation, arguments.figure, file); });
+  deliver(arguments, evaluation, report, std::move(files));
+  return exit_code(requirements_hold);
+}
+
+ExitCode run_map(const Arguments& arguments, cmap::RunClock& clock) {
+  refuse_files_of_pairs(arguments);
+  const cmap::EvaluationOptions options = resolve_options(arguments);
+  cmap::select_map_metrics(options);  // refuses before the work
+  std::vector<cmap::Requirement> requirements;
+  for (const std::string& text : arguments.requirements) {
+    requirements.push_back(cmap::parse_map_requirement(text, options));
+  }
+  cmap::PointCloudFile map = clock.timed_reading(
+      [&] { return cmap::read_point_cloud(arguments.reference, cmap::read_options(options, true)); });
+  const cmap::InputDescription about_map = describe(map);
+  const cmap::MapEvaluation evaluation =
+      blaming_files(arguments, [&] { return cmap::evaluate_map(std::move(map.cloud), options, clock.progress()); });
+  const auto report = cmap::make_report(about_map, evaluation, clock.description_after(evaluation));
+  const bool requirements_hold = check_requirements(requirements, evaluation);
+  deliver(arguments, evaluation, report, {});
+  return exit_code(requirements_hold);
+}
+
 ExitCode run(const Arguments& arguments, const std::string& command) {
-  const auto start = std::chrono::steady_clock::now();
-  const auto started = fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now()));
   const cmap::ThreadLimit limit(arguments.common.threads);
-  cmap::RunDescription run{command,
-                           fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", started),
-                           0.0,
-                           {},
-                           cmap::thread_count(),
-                           std::string(cmap::simd_level_name(cmap::simd_level()))};
+  cmap::RunClock clock(command, arguments.common.quiet);
   cmap::refuse_overwriting(
       {arguments.reference, arguments.estimate, arguments.config, arguments.transform, arguments.initial,
        arguments.reference_trajectory, arguments.estimate_trajectory, arguments.times, arguments.sensor},
       arguments.outputs());
   check_outputs(arguments);
-  std::optional<cmap::FigureModule> figures;
-  if (!arguments.figure.empty()) figures.emplace().check_name(arguments.figure);
-  const cmap::EvaluationOptions options = resolve_options(arguments);
-  std::vector<cmap::Requirement> requirements;
-  for (const std::string& text : arguments.requirements) requirements.push_back(cmap::parse_requirement(text, options));
-  const cmap::ProtocolInputs inputs = protocol_inputs(arguments, options);
-
-  const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-  cmap::ProgressBar progress(!arguments.common.quiet);
-  progress.update("read", 0.0);
-  auto [reference, estimate] =
-      cmap::read_both(arguments.reference, arguments.estimate, cmap::read_options(options, true));
-  run.stage_seconds.emplace_back("read", seconds());
-  const cmap::InputDescription reference_description = describe(reference);
-  const cmap::InputDescription estimate_description = describe(estimate);
-  cmap::Evaluation evaluation = blaming_files(arguments, [&] {
-    return cmap::evaluate_by_protocol(std::move(reference.cloud), std::move(estimate.cloud), options, inputs,
-                                      [&](std::string_view stage, double done) { progress.update(stage, done); });
-  });
-  cmap::warn_about_shifts(evaluation, arguments.reference, arguments.estimate);
-  run.stage_seconds.insert(run.stage_seconds.end(), evaluation.stage_seconds.begin(), evaluation.stage_seconds.end());
-  run.wall_s = seconds();
-  const auto report = cmap::make_report(reference_description, estimate_description, evaluation, run);
-  const bool requirements_hold = check_requirements(requirements, evaluation);
-  deliver(arguments, evaluation, report, figures);
-  return requirements_hold ? ExitCode::kDone : ExitCode::kRequirementFailed;
+  return arguments.estimate.empty() ? run_map(arguments, clock) : run_pair(arguments, clock);
 }
 
 }  // namespace

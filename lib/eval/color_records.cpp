@@ -32,8 +32,9 @@ void add_without_color(Json& fields, const MapPair& pair) {
 Json color_distance_fields(const EvaluationOptions& options, const MapPair& pair, const ColorDistance& cd,
                            std::vector<Warning>& warnings) {
   if (std::isnan(cd.value())) {
-    warnings.push_back({"color_distance_no_pairs", "no pair of nearest points counts in both directions (both need a "
-                                                   "color, within color-max-distance): no color distance"});
+    warnings.push_back({"color_distance_no_pairs",
+                        "no pair of nearest points counts in both directions (both need a "
+                        "color, within color-max-distance): no color distance"});
   }
   Json fields{{"value", json_number(cd.value())},
               {"value_8bit", json_number(255.0 * cd.value())},
@@ -76,10 +77,10 @@ Json recall_fields(const EvaluationOptions& options, const MapPair& pair, const 
 
 Json consistency_numbers(const IndexedMap& map, const ColorConsistency& c, Singletons singletons) {
   const double value = c.value(singletons);
-  Json numbers{{"value", json_number(value)},          {"value_x100", json_number(100.0 * value)},
-               {"zero", json_number(c.zero)},          {"exclude", json_number(c.exclude)},
-               {"median", json_number(c.median)},      {"n_voxels", c.n_voxels(singletons)},
-               {"n_occupied", c.n_occupied},           {"n_singletons", c.n_singletons}};
+  Json numbers{{"value", json_number(value)},     {"value_x100", json_number(100.0 * value)},
+               {"zero", json_number(c.zero)},     {"exclude", json_number(c.exclude)},
+               {"median", json_number(c.median)}, {"n_voxels", c.n_voxels(singletons)},
+               {"n_occupied", c.n_occupied},      {"n_singletons", c.n_singletons}};
   if (map.n_without_color > 0) numbers["n_without_color"] = map.n_without_color;
   return numbers;
 }
@@ -97,28 +98,8 @@ void warn_of_singletons(const EvaluationOptions& o, const ColorConsistency& c, s
                    n_single, c.n_occupied, o.ccs_voxel_m, counted)});
 }
 
-Json consistency_fields(const Findings& f, std::vector<Warning>& warnings) {
-  const EvaluationOptions& o = f.options;
-  const ColorConsistency estimate = color_consistency(f.pair.estimate, o.ccs_voxel_m, o.ccs_min_points);
-  const ColorConsistency reference = color_consistency(f.pair.reference, o.ccs_voxel_m, o.ccs_min_points);
-  if (o.ccs_singletons == Singletons::kRefuse && estimate.n_singletons > 0) {
-    throw UnsupportedError(fmt::format(
-        "ccs-singletons: {} of the estimate's {} voxels of {} m hold a single point; zero or exclude says what they "
-        "count as",
-        estimate.n_singletons, estimate.n_occupied, o.ccs_voxel_m));
-  }
-  if (estimate.n_voxels(o.ccs_singletons) == 0) {
-    warnings.push_back({"color_consistency_no_voxels",
-                        fmt::format("no {} m voxel of the estimate holds {} points: no color consistency",
-                                    o.ccs_voxel_m, o.ccs_min_points)});
-  }
-  warn_of_singletons(o, estimate, warnings);
-  Json fields = consistency_numbers(f.pair.estimate, estimate, o.ccs_singletons);
-  fields["parameters"] = {{"voxel_m", o.ccs_voxel_m},
-                          {"singletons", singletons_name(o.ccs_singletons)},
-                          {"min_points", o.ccs_min_points}};
-  fields["reference"] = consistency_numbers(f.pair.reference, reference, o.ccs_singletons);
-  return fields;
+ColorConsistency consistency_of(const EvaluationOptions& options, const IndexedMap& map) {
+  return color_consistency(map, options.ccs_voxel_m, options.ccs_min_points);
 }
 
 Json delta_e_fields(const Findings& f) {
@@ -190,6 +171,26 @@ Json psnr_fields(const Findings& f) {
 
 }  // namespace
 
+Json color_consistency_fields(const EvaluationOptions& o, const IndexedMap& map, std::vector<Warning>& warnings) {
+  const ColorConsistency consistency = consistency_of(o, map);
+  if (o.ccs_singletons == Singletons::kRefuse && consistency.n_singletons > 0) {
+    throw UnsupportedError(fmt::format(
+        "ccs-singletons: {} of the estimate's {} voxels of {} m hold a single point; zero or exclude says what they "
+        "count as",
+        consistency.n_singletons, consistency.n_occupied, o.ccs_voxel_m));
+  }
+  if (consistency.n_voxels(o.ccs_singletons) == 0) {
+    warnings.push_back({"color_consistency_no_voxels",
+                        fmt::format("no {} m voxel of the estimate holds {} points: no color consistency",
+                                    o.ccs_voxel_m, o.ccs_min_points)});
+  }
+  warn_of_singletons(o, consistency, warnings);
+  Json fields = consistency_numbers(map, consistency, o.ccs_singletons);
+  fields["parameters"] = {
+      {"voxel_m", o.ccs_voxel_m}, {"singletons", singletons_name(o.ccs_singletons)}, {"min_points", o.ccs_min_points}};
+  return fields;
+}
+
 std::vector<MetricRecord> color_records(const Findings& f, std::optional<LocalColorRecall>& recall,
                                         std::vector<Warning>& warnings) {
   std::optional<ColorDistance> cd;
@@ -204,7 +205,13 @@ std::vector<MetricRecord> color_records(const Findings& f, std::optional<LocalCo
         f.pair, {.tau = f.options.lcr_tau, .radius_m = f.options.lcr_radius_m, .curve = f.options.lcr_curve});
     return recall_fields(f.options, f.pair, *recall);
   });
-  records.add("color_consistency", [&] { return consistency_fields(f, warnings); });
+  records.add("color_consistency", [&] {
+    Json fields = color_consistency_fields(f.options, f.pair.estimate, warnings);
+    const IndexedMap& reference = f.pair.reference;
+    fields["reference"] =
+        consistency_numbers(reference, consistency_of(f.options, reference), f.options.ccs_singletons);
+    return fields;
+  });
   records.add("delta_e", [&] { return delta_e_fields(f); });
   records.add("color_distance_by_range", [&] { return by_range_fields(f); });
   records.add("color_distance_exposure_free", [&] { return exposure_free_fields(f); });

@@ -1,7 +1,6 @@
 #include "cmap/eval/evaluation.hpp"
 
 #include <algorithm>
-#include <chrono>
 
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
@@ -10,33 +9,10 @@
 #include "eval/peer_records.hpp"
 #include "eval/plausibility.hpp"
 #include "eval/preparation.hpp"
+#include "eval/stage_clock.hpp"
 
 namespace cmap {
 namespace {
-
-/// Times the stages of the evaluation and tells the user which one runs.
-class StageClock {
- public:
-  StageClock(std::vector<std::pair<std::string, double>>& seconds, const ProgressSink& progress)
-      : seconds_(seconds), progress_(progress) {}
-
-  template <class Work>
-  void run(const char* stage, double done_before, Work&& work) {
-    if (progress_) progress_(stage, done_before);
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    seconds_.emplace_back(stage, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  }
-
- private:
-  std::vector<std::pair<std::string, double>>& seconds_;
-  const ProgressSink& progress_;
-};
-
-/// Colors that no point has are none.
-void drop_missing_colors(PointCloud& cloud) {
-  if (cloud.has_color() && count_without_color(cloud.colors) == cloud.size()) cloud.colors = {};
-}
 
 void check_color(const PointCloud& reference, const PointCloud& estimate, const MetricSelection& selection,
                  std::vector<Warning>& warnings) {
@@ -158,6 +134,7 @@ Evaluation evaluate(PointCloud reference, PointCloud estimate, const EvaluationO
     }
     append(result.metrics, entropy_records(findings, warnings));
   });
+  clock.run("density", 0.92, [&] { append(result.metrics, density_records(findings, warnings)); });
   clock.run("intervals", 0.93, [&] {
     const LocalColorRecall* recall = result.recall ? &*result.recall : nullptr;
     result.intervals = interval_records(findings, recall, warnings);

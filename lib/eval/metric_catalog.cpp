@@ -26,6 +26,47 @@ bool is_in_group(const MetricInfo& metric, std::string_view group) {
   return group == "all" || metric.group == group || (group == "color+" && metric.group == "color");
 }
 
+std::vector<std::string> names_asked_for(const EvaluationOptions& options) {
+  return options.metrics.empty() ? std::vector<std::string>{"default"} : options.metrics;
+}
+
+std::vector<std::string_view> ids_of(const std::vector<const MetricInfo*>& metrics) {
+  std::vector<std::string_view> ids;
+  for (const MetricInfo* metric : metrics) ids.push_back(metric->id);
+  return ids;
+}
+
+/// The metrics of a group, or the one that is called so.
+std::vector<const MetricInfo*> metrics_named(const std::string& name) {
+  std::vector<const MetricInfo*> metrics;
+  for (const MetricInfo& metric : metric_catalog()) {
+    if (is_called(metric, name) || is_in_group(metric, name)) metrics.push_back(&metric);
+  }
+  if (metrics.empty()) {
+    throw UsageError(fmt::format(
+        "metrics: \"{}\" is unknown; groups are default, color, color+, geometry, distribution, mme, density, all;"
+        "\nmetrics are {}",
+        name, fmt::join(ids_of(metrics_named("all")), ", ")));
+  }
+  return metrics;
+}
+
+void select(MetricSelection& selection, const MetricInfo& metric, const std::string& name) {
+  selection.ids.insert(metric.id);
+  if (metric.needs_color && name != "all" && name != "default") selection.color_is_required = true;
+}
+
+void refuse_options_of_pairs(const EvaluationOptions& options) {
+  const std::pair<const char*, bool> of_pairs[] = {{"align", options.align != "none"},
+                                                   {"as", !options.as.empty()},
+                                                   {"bootstrap", options.bootstrap > 0},
+                                                   {"observed", options.observed != Observed::kNone},
+                                                   {"sensitivity", options.sensitivity}};
+  for (const auto& [name, is_given] : of_pairs) {
+    if (is_given) throw UsageError(fmt::format("{}: needs a reference map, which is missing", name));
+  }
+}
+
 }  // namespace
 
 const std::vector<MetricInfo>& metric_catalog() {
@@ -40,7 +81,8 @@ const std::vector<MetricInfo>& metric_catalog() {
        "Never above the coverage, the share with any estimated point there."},
       {"color_consistency", "CCS", "color consistency", "color", "unit RGB^2", "lower", true, false,
        "Mean over the estimate's voxels of the trace of the color covariance: how much colors scatter within a voxel. "
-       "One of a single point counts as 0 or is left out, as the parameters say."},
+       "One of a single point counts as 0 or is left out, as the parameters say.",
+       false},
       {"delta_e", "dE00", "CIEDE2000", "color+", "1", "lower", true, false,
        "Perceived color difference (CIEDE2000) of nearest pairs within the radius of LCR: mean, median and 95th "
        "percentile of both directions."},
@@ -77,7 +119,12 @@ const std::vector<MetricInfo>& metric_catalog() {
        "averaged."},
       {"mean_map_entropy", "MME", "mean map entropy", "mme", "nats", "lower", false, false,
        "Mean entropy of the Gaussian of every point's neighborhood, where that is not flat to the rounding of its "
-       "coordinates: lower is crisper. Needs no reference."},
+       "coordinates: lower is crisper. Needs no reference.",
+       false},
+      {"point_spacing", "", "point spacing", "density", "m", "", false, false,
+       "Median distance from a point to the nearest other one, copies counted once: the smaller, the denser the map. "
+       "Needs no reference.",
+       false},
   };
   return catalog;
 }
@@ -89,29 +136,32 @@ const MetricInfo* find_metric(std::string_view id_or_symbol) {
 }
 
 MetricSelection select_metrics(const EvaluationOptions& options) {
-  static const std::vector<std::string> kDefault{"default"};
   MetricSelection selection;
-  for (const std::string& name : options.metrics.empty() ? kDefault : options.metrics) {
-    bool known = false;
-    for (const MetricInfo& metric : metric_catalog()) {
-      if (!is_called(metric, name) && !is_in_group(metric, name)) continue;
-      known = true;
-      selection.ids.insert(metric.id);
-      if (metric.needs_color && name != "all" && name != "default") selection.color_is_required = true;
-    }
-    if (!known) {
-      std::vector<std::string_view> ids;
-      for (const MetricInfo& metric : metric_catalog()) ids.push_back(metric.id);
-      throw UsageError(
-          fmt::format("metrics: \"{}\" is unknown; groups are default, color, color+, geometry, distribution, mme, all;"
-                      "\nmetrics are {}",
-                      name, fmt::join(ids, ", ")));
-    }
+  for (const std::string& name : names_asked_for(options)) {
+    for (const MetricInfo* metric : metrics_named(name)) select(selection, *metric, name);
   }
   const bool as_mapeval = std::ranges::count(options.as, "mapeval") > 0;
   selection.needs_gaussians =
       as_mapeval || selection.contains("average_wasserstein") || selection.contains("spatial_consistency");
   selection.needs_neighborhoods = as_mapeval || selection.contains("mean_map_entropy");
+  return selection;
+}
+
+MetricSelection select_map_metrics(const EvaluationOptions& options) {
+  refuse_options_of_pairs(options);
+  MetricSelection selection;
+  for (const std::string& name : names_asked_for(options)) {
+    std::vector<const MetricInfo*> metrics = metrics_named(name == "default" ? "all" : name);
+    std::erase_if(metrics, [](const MetricInfo* metric) { return metric->needs_reference; });
+    if (metrics.empty()) {
+      std::vector<const MetricInfo*> known = metrics_named("all");
+      std::erase_if(known, [](const MetricInfo* metric) { return metric->needs_reference; });
+      throw UsageError(fmt::format("metrics: {} needs a reference map, which is missing; without one there are {}",
+                                   name, fmt::join(ids_of(known), ", ")));
+    }
+    for (const MetricInfo* metric : metrics) select(selection, *metric, name);
+  }
+  selection.needs_neighborhoods = selection.contains("mean_map_entropy");
   return selection;
 }
 

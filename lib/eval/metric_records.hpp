@@ -31,6 +31,15 @@ std::vector<MetricRecord> color_records(const Findings& findings, std::optional<
                                         std::vector<Warning>& warnings);
 std::vector<MetricRecord> distribution_records(const Findings& findings, std::vector<Warning>& warnings);
 std::vector<MetricRecord> entropy_records(const Findings& findings, std::vector<Warning>& warnings);
+std::vector<MetricRecord> density_records(const Findings& findings, std::vector<Warning>& warnings);
+
+/// The fields of a metric that needs no reference, for one map; warnings are appended. The map of color_consistency has
+/// color.
+nlohmann::ordered_json color_consistency_fields(const EvaluationOptions& options, const IndexedMap& map,
+                                                std::vector<Warning>& warnings);
+nlohmann::ordered_json mean_map_entropy_fields(const EvaluationOptions& options, const NeighborhoodShape& neighborhoods,
+                                               std::vector<Warning>& warnings);
+nlohmann::ordered_json point_spacing_fields(const IndexedMap& map, std::vector<Warning>& warnings);
 
 /// The selected color metrics of maps without color: null.
 std::vector<MetricRecord> missing_color_records(const MetricSelection& selection);

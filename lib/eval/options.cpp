@@ -227,7 +227,7 @@ void apply(EvaluationOptions& options, const Json& config) {
 const std::vector<OptionSpec>& evaluation_option_specs() {
   static const std::vector<OptionSpec> specs{
       CMAP_OPTION("metrics", kWords, "LIST",
-                  "groups (color, color+, geometry, distribution, mme, all), metric ids or symbols", metrics,
+                  "groups (color, color+, geometry, distribution, mme, density, all), metric ids or symbols", metrics,
                   metric_names(n, value), o.metrics.empty() ? std::vector<std::string>{"default"} : o.metrics),
       CMAP_OPTION("thresholds", kNumbers, "METERS,...", "of accuracy, fitness, completeness, F-score", thresholds_m,
                   thresholds(n, value), o.thresholds_m),

@@ -48,15 +48,17 @@ void check_voxels(const char* option, double size_m, double default_m, const Sha
   if (countable(box, size_m)) return;
   if (map.body.n_strays > 0 && countable(map.body.box, size_m)) {
     const Eigen::Vector3d x = map.cloud.world(map.body.farthest);
-    throw MapError(map.which,
-                   fmt::format("point {} of {}, at ({:.10g}, {:.10g}, {:.10g}), lies {:.4g} m from nearly all others, too "
-                               "far to count voxels up to it; leave out such points, {} here, as with --crop",
-                               map.body.farthest + 1, map.cloud.size(), x.x(), x.y(), x.z(), map.body.farthest_m,
-                               map.body.n_strays));
+    throw MapError(
+        map.which,
+        fmt::format("point {} of {}, at ({:.10g}, {:.10g}, {:.10g}), lies {:.4g} m from nearly all others, too "
+                    "far to count voxels up to it; leave out such points, {} here, as with --crop",
+                    map.body.farthest + 1, map.cloud.size(), x.x(), x.y(), x.z(), map.body.farthest_m,
+                    map.body.n_strays));
   }
   if (size_m == default_m) {
-    throw MapError(map.which, fmt::format("the points span {:.4g} m, too much to count voxels of {} m: are they in meters?",
-                                          (box.max - box.min).maxCoeff(), size_m));
+    throw MapError(map.which,
+                   fmt::format("the points span {:.4g} m, too much to count voxels of {} m: are they in meters?",
+                               (box.max - box.min).maxCoeff(), size_m));
   }
   try {
     const VoxelFrame frame(box, size_m);
@@ -94,6 +96,10 @@ void rebase(PointCloud& cloud, const Eigen::Vector3d& origin) {
 
 }  // namespace
 
+void drop_missing_colors(PointCloud& cloud) {
+  if (cloud.has_color() && count_without_color(cloud.colors) == cloud.size()) cloud.colors = {};
+}
+
 CoordinateSteps prepare_clouds(PointCloud& reference, PointCloud& estimate, const EvaluationOptions& options,
                                const MetricSelection& selection, const Eigen::Matrix4d& T_ref_est,
                                std::vector<Warning>& warnings) {
@@ -116,6 +122,15 @@ CoordinateSteps prepare_clouds(PointCloud& reference, PointCloud& estimate, cons
     rebase(estimate, origin);
   }
   return steps;
+}
+
+std::optional<CoordinateStep> prepare_map(PointCloud& map, const EvaluationOptions& options,
+                                          const MetricSelection& selection) {
+  require_finite_points(map, "map");
+  const auto step = coarse_step(map, finest_step_needed_m(options));
+  crop_and_thin(map, options, "map");
+  check_voxels_of_metrics(options, selection, {map, body_of(map), "map"});
+  return step;
 }
 
 }  // namespace cmap

@@ -5,6 +5,9 @@
 
 namespace cmap {
 
+/// Colors that no point has are none.
+void drop_missing_colors(PointCloud& cloud);
+
 /// The coarse steps of both maps' coordinates before they were moved, where there are any.
 struct CoordinateSteps {
   std::optional<CoordinateStep> reference;
@@ -18,5 +21,9 @@ struct CoordinateSteps {
 CoordinateSteps prepare_clouds(PointCloud& reference, PointCloud& estimate, const EvaluationOptions& options,
                                const MetricSelection& selection, const Eigen::Matrix4d& T_ref_est,
                                std::vector<Warning>& warnings);
+
+/// The same for one map without a reference, which keeps its origin; its coarse step.
+std::optional<CoordinateStep> prepare_map(PointCloud& map, const EvaluationOptions& options,
+                                          const MetricSelection& selection);
 
 }  // namespace cmap

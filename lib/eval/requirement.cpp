@@ -48,9 +48,8 @@ const nlohmann::ordered_json& part_of(const MetricRecord& record, const Requirem
   refuse(requirement.text, "no such threshold");
 }
 
-}  // namespace
-
-Requirement parse_requirement(const std::string& text, const EvaluationOptions& options) {
+/// The expression alone.
+Requirement parse(const std::string& text) {
   static const std::regex kForm(
       R"(\s*([A-Za-z_0-9]+#?)((?:\.[A-Za-z_0-9]+)*)(?:@([0-9.eE+-]+))?\s*(>=|<=|==|>|<)\s*([-+0-9.eE]+)\s*)");
   std::smatch match;
@@ -66,16 +65,27 @@ Requirement parse_requirement(const std::string& text, const EvaluationOptions& 
                           match[4].str(), number(match[5].str())};
   if (match[3].matched) requirement.threshold_m = number(match[3].str());
   if (requirement.metric == nullptr) refuse(text, fmt::format("unknown metric \"{}\"", match[1].str()));
-  if (!select_metrics(options).contains(requirement.metric->id)) {
-    refuse(text, fmt::format("{} is not computed; add it to --metrics", requirement.metric->id));
-  }
-  check_threshold(requirement, options);
   return requirement;
 }
 
-RequirementOutcome check(const Requirement& requirement, const Evaluation& evaluation) {
-  const MetricRecord* record = evaluation.find(requirement.metric->id);
-  if (record == nullptr) refuse(requirement.text, "the metric was not computed");
+void require_computed(const Requirement& requirement, const MetricSelection& selection) {
+  if (selection.contains(requirement.metric->id)) return;
+  refuse(requirement.text, fmt::format("{} is not computed; add it to --metrics", requirement.metric->id));
+}
+
+/// A fidelity of exact colors is null in the record, for JSON knows no infinity, and said in a warning.
+bool is_infinite(const Requirement& requirement, const std::vector<Warning>& warnings) {
+  return requirement.metric->id == "color_fidelity" && (requirement.field.empty() || requirement.field == ".value") &&
+         std::ranges::count(warnings, "color_fidelity_infinite", &Warning::id) > 0;
+}
+
+RequirementOutcome check(const Requirement& requirement, const std::vector<MetricRecord>& metrics,
+                         const std::vector<Warning>& warnings) {
+  const auto record = std::ranges::find(metrics, requirement.metric, &MetricRecord::info);
+  if (record == metrics.end()) refuse(requirement.text, "the metric was not computed");
+  if (is_infinite(requirement, warnings)) {
+    return {compare(INFINITY, requirement.comparison, requirement.bound), INFINITY};
+  }
   const auto& part = part_of(*record, requirement);
   std::string path = requirement.field.empty() ? ".value" : requirement.field;
   const std::string field = path.substr(1);
@@ -90,6 +100,33 @@ RequirementOutcome check(const Requirement& requirement, const Evaluation& evalu
   if (value.is_null()) return {false, std::nullopt};
   if (!value.is_number()) refuse(requirement.text, fmt::format("{} is not a number", field));
   return {compare(value.get<double>(), requirement.comparison, requirement.bound), value.get<double>()};
+}
+
+}  // namespace
+
+Requirement parse_requirement(const std::string& text, const EvaluationOptions& options) {
+  Requirement requirement = parse(text);
+  require_computed(requirement, select_metrics(options));
+  check_threshold(requirement, options);
+  return requirement;
+}
+
+Requirement parse_map_requirement(const std::string& text, const EvaluationOptions& options) {
+  Requirement requirement = parse(text);
+  if (requirement.metric->needs_reference) {
+    refuse(text, fmt::format("{} needs a reference map, which is missing", requirement.metric->id));
+  }
+  require_computed(requirement, select_map_metrics(options));
+  check_threshold(requirement, options);
+  return requirement;
+}
+
+RequirementOutcome check(const Requirement& requirement, const Evaluation& evaluation) {
+  return check(requirement, evaluation.metrics, evaluation.warnings);
+}
+
+RequirementOutcome check(const Requirement& requirement, const MapEvaluation& evaluation) {
+  return check(requirement, evaluation.metrics, evaluation.warnings);
 }
 
 }  // namespace cmap

@@ -32,15 +32,9 @@ Json consistency_fields(const EvaluationOptions& options, const SpatialConsisten
   return {{"value", json_number(scs.value)}, {"parameters", parameters}, {"n_voxels", scs.n_voxels}};
 }
 
-Json entropy_fields(const EvaluationOptions& options, const Neighborhoods& neighborhoods) {
-  const auto numbers = [&](const NeighborhoodShape& shape) -> Json {
-    const MeanMapEntropy mme = mean_map_entropy(shape, options.mme_min_neighbors);
-    return {{"value", json_number(mme.value)}, {"n", mme.n}, {"n_left_out", mme.n_left_out}, {"n_flat", mme.n_flat}};
-  };
-  Json fields = numbers(neighborhoods.estimate);
-  fields["parameters"] = {{"radius_m", options.mme_radius_m}, {"min_neighbors", options.mme_min_neighbors}};
-  fields["reference"] = numbers(neighborhoods.reference);
-  return fields;
+Json entropy_numbers(const EvaluationOptions& options, const NeighborhoodShape& shape) {
+  const MeanMapEntropy mme = mean_map_entropy(shape, options.mme_min_neighbors);
+  return {{"value", json_number(mme.value)}, {"n", mme.n}, {"n_left_out", mme.n_left_out}, {"n_flat", mme.n_flat}};
 }
 
 Warning why_no_entropy(const EvaluationOptions& options, std::uint64_t n_flat) {
@@ -79,11 +73,19 @@ std::vector<MetricRecord> distribution_records(const Findings& f, std::vector<Wa
   return records.take();
 }
 
+Json mean_map_entropy_fields(const EvaluationOptions& options, const NeighborhoodShape& neighborhoods,
+                             std::vector<Warning>& warnings) {
+  Json fields = entropy_numbers(options, neighborhoods);
+  if (fields["value"].is_null()) warnings.push_back(why_no_entropy(options, fields["n_flat"]));
+  fields["parameters"] = {{"radius_m", options.mme_radius_m}, {"min_neighbors", options.mme_min_neighbors}};
+  return fields;
+}
+
 std::vector<MetricRecord> entropy_records(const Findings& f, std::vector<Warning>& warnings) {
   RecordList records(f.selection);
   records.add("mean_map_entropy", [&] {
-    Json fields = entropy_fields(f.options, *f.neighborhoods);
-    if (fields["value"].is_null()) warnings.push_back(why_no_entropy(f.options, fields["n_flat"]));
+    Json fields = mean_map_entropy_fields(f.options, f.neighborhoods->estimate, warnings);
+    fields["reference"] = entropy_numbers(f.options, f.neighborhoods->reference);
     return fields;
   });
   return records.take();

@@ -41,7 +41,7 @@ std::string lines(const Json& metrics, const std::function<std::string(const Met
 
 std::string alignment_lines(const Json& report) {
   const Json& alignment = report.at("alignment");
-  if (alignment.at("registration").is_null()) return "";
+  if (alignment.is_null() || alignment.at("registration").is_null()) return "";
   const Json& registration = alignment.at("registration");
   return fmt::format("\nbefore the alignment by {} (scale error {:.4g} %, {} iterations, overlap {} %)\n",
                      alignment.at("method").get<std::string>(), 100.0 * alignment.at("scale_error").get<double>(),

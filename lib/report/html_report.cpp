@@ -56,9 +56,9 @@ std::string inlined(const Json& json) {
   return text;
 }
 
-Json definitions(const Evaluation& evaluation) {
+Json definitions(const std::vector<MetricRecord>& metrics) {
   Json list = Json::array();
-  for (const MetricRecord& record : evaluation.metrics) {
+  for (const MetricRecord& record : metrics) {
     const MetricInfo& metric = *record.info;
     list.push_back(
         {{"id", metric.id}, {"title", metric.title}, {"group", metric.group}, {"definition", metric.definition}});
@@ -133,7 +133,13 @@ std::string file_name(const Json& input) {
   return std::filesystem::path(input.at("path").get<std::string>()).filename().string();
 }
 
-/// What the page shows beside the report, and the bytes of both maps.
+Json named(const char* id, const char* title, const PackedMap& packed) {
+  Json map{{"id", id}, {"title", title}};
+  map.update(packed.description);
+  return map;
+}
+
+/// What the page shows beside the report, and the bytes of its maps.
 struct PageData {
   Json page;
   std::string points;
@@ -143,15 +149,10 @@ PageData page_data(const Json& report, const Evaluation& evaluation) {
   const MapPair& pair = evaluation.pair;
   const LocalColorRecall* recall = evaluation.recall ? &*evaluation.recall : nullptr;
   const auto [n_reference, n_estimate] = points_of_maps(pair);
-  PackedMap reference =
+  const PackedMap reference =
       pack_map(pair.reference_to_estimate(), recall, evenly_spread_slots(pair.reference.index.points, n_reference));
-  PackedMap estimate =
+  const PackedMap estimate =
       pack_map(pair.estimate_to_reference(), nullptr, evenly_spread_slots(pair.estimate.index.points, n_estimate));
-  const auto named = [](const char* id, const char* title, Json description) {
-    Json map{{"id", id}, {"title", title}};
-    map.update(description);
-    return map;
-  };
   Json distributions = Json::array();
   Json layers{map_layer(pair.reference, "reference", "Reference", reference),
               map_layer(pair.estimate, "estimate", "Estimate", estimate)};
@@ -171,23 +172,33 @@ PageData page_data(const Json& report, const Evaluation& evaluation) {
                        distribution_json("distance", "Distance to the nearest point", "m", distances, pair));
   if (pair.estimate.has_color()) layers.push_back(height_layer("estimate", "Height", estimate));
   const Json& inputs = report.at("inputs");
-  return {
-      {{"title", fmt::format("{} against {}", file_name(inputs.at("estimate")), file_name(inputs.at("reference")))},
-       {"metrics", definitions(evaluation)},
-       {"distributions", distributions},
-       {"maps",
-        {named("reference", "Reference", reference.description), named("estimate", "Estimate", estimate.description)}},
-       {"layers", layers}},
-      reference.bytes + estimate.bytes};
+  return {{{"title", fmt::format("{} against {}", file_name(inputs.at("estimate")), file_name(inputs.at("reference")))},
+           {"metrics", definitions(evaluation.metrics)},
+           {"distributions", distributions},
+           {"maps", {named("reference", "Reference", reference), named("estimate", "Estimate", estimate)}},
+           {"layers", layers}},
+          reference.bytes + estimate.bytes};
 }
 
-}  // namespace
+/// Of one map: its colors, where it has them, and its height.
+PageData page_data(const Json& report, const MapEvaluation& evaluation) {
+  const IndexedMap& map = evaluation.map;
+  const PackedMap packed = pack_map(map, evenly_spread_slots(map.index.points, kPointsOfPage));
+  Json layers = Json::array();
+  if (map.has_color()) layers.push_back(map_layer(map, "estimate", "Map", packed));
+  layers.push_back(height_layer("estimate", "Height", packed));
+  return {{{"title", file_name(report.at("inputs").at("estimate"))},
+           {"metrics", definitions(evaluation.metrics)},
+           {"distributions", Json::array()},
+           {"maps", Json::array({named("estimate", "Map", packed)})},
+           {"layers", layers}},
+          packed.bytes};
+}
 
-void write_html_report(const Json& report, const Evaluation& evaluation, OutputFile& file) {
+void write_page(const Json& report, const PageData& data, OutputFile& file) {
   const std::string_view page = html_page();
   const std::size_t place = page.find(kDataPlace);
   if (place == page.npos) throw std::logic_error("the page has no place for its data");
-  const PageData data = page_data(report, evaluation);
   const auto script = [&](const char* type, const char* id, const std::string& text) {
     file.write(fmt::format("<script type=\"{}\" id=\"{}\">", type, id));
     file.write(text);
@@ -198,6 +209,16 @@ void write_html_report(const Json& report, const Evaluation& evaluation, OutputF
   script("application/json", "cmap-page", inlined(data.page));
   script("text/plain", "cmap-points", base64(gzipped(data.points)));
   file.write(page.substr(place + kDataPlace.size()));
+}
+
+}  // namespace
+
+void write_html_report(const Json& report, const Evaluation& evaluation, OutputFile& file) {
+  write_page(report, page_data(report, evaluation), file);
+}
+
+void write_html_report(const Json& report, const MapEvaluation& evaluation, OutputFile& file) {
+  write_page(report, page_data(report, evaluation), file);
 }
 
 }  // namespace cmap

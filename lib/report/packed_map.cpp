@@ -94,14 +94,20 @@ std::array<double, 2> central_z_m(const PointBlocks& points, const Array<std::ui
 
 }  // namespace
 
-PackedMap pack_map(const NearestPairs& pairs, const LocalColorRecall* recall, const Array<std::uint32_t>& slots) {
-  const PointBlocks& points = pairs.from.index.points;
+PackedMap pack_map(const IndexedMap& map, const Array<std::uint32_t>& slots) {
+  const PointBlocks& points = map.index.points;
   PackedMap packed;
   packed.central_z_m = central_z_m(points, slots);
   packed.description = {{"points", slots.size()}, {"points_of_map", points.size}, {"planes", Json::array()}};
   PlaneWriter writer(packed, slots);
   add_positions(writer, packed, points, slots);
-  if (pairs.from.has_color()) add_colors(writer, pairs.from);
+  if (map.has_color()) add_colors(writer, map);
+  return packed;
+}
+
+PackedMap pack_map(const NearestPairs& pairs, const LocalColorRecall* recall, const Array<std::uint32_t>& slots) {
+  PackedMap packed = pack_map(pairs.from, slots);
+  PlaneWriter writer(packed, slots);
   add_error(writer, "distance", "m", slots, [&](std::uint32_t slot) { return pairs.distance_m(slot); });
   if (pairs.from.has_color() && pairs.to.has_color()) {
     add_error(writer, "color_distance", "unit RGB", slots,

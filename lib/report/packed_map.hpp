@@ -21,4 +21,7 @@ struct PackedMap {
 /// The points in `slots` of pairs.from with their color and errors; `recall` is null where there is none.
 PackedMap pack_map(const NearestPairs& pairs, const LocalColorRecall* recall, const Array<std::uint32_t>& slots);
 
+/// The points in `slots` of one map with their color.
+PackedMap pack_map(const IndexedMap& map, const Array<std::uint32_t>& slots);
+
 }  // namespace cmap

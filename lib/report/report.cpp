@@ -71,7 +71,7 @@ Json alignment_record(const Evaluation& evaluation) {
 Json metric_json(const MetricRecord& record) {
   Json json = record.fields;
   json["unit"] = record.info->unit;
-  json["better"] = record.info->better;
+  json["better"] = record.info->better.empty() ? Json(nullptr) : Json(record.info->better);
   json["symbol"] = record.info->symbol;
   if (!json.contains("parameters")) json["parameters"] = Json::object();
   return json;
@@ -112,6 +112,20 @@ void add_input_warnings(Json& warnings, const char* which, const InputDescriptio
   }
 }
 
+void add_warnings(Json& warnings, const std::vector<Warning>& found) {
+  for (const Warning& warning : found) {
+    warnings.push_back({{"id", warning.id}, {"message", valid_utf8(warning.message)}});
+  }
+}
+
+Json report_head() { return {{"schema", kReportSchema}, {"tool", {{"name", "cmap_eval"}, {"version", kVersion}}}}; }
+
+Json metrics_json(const std::vector<MetricRecord>& records) {
+  Json metrics = Json::object();
+  for (const MetricRecord& record : records) metrics[record.info->id] = metric_json(record);
+  return metrics;
+}
+
 }  // namespace
 
 InputDescription describe(const PointCloudFile& file) {
@@ -133,14 +147,11 @@ std::string shell_command(const std::vector<std::string>& words) {
 
 Json make_report(const InputDescription& reference, const InputDescription& estimate, const Evaluation& evaluation,
                  const RunDescription& run) {
-  Json report;
-  report["schema"] = "cmap.report/1";
-  report["tool"] = {{"name", "cmap_eval"}, {"version", kVersion}};
+  Json report = report_head();
   report["inputs"] = {{"reference", input_json(reference)}, {"estimate", input_json(estimate)}};
   report["parameters"] = to_json(evaluation.options);
   report["alignment"] = alignment_record(evaluation);
-  report["metrics"] = Json::object();
-  for (const MetricRecord& record : evaluation.metrics) report["metrics"][record.info->id] = metric_json(record);
+  report["metrics"] = metrics_json(evaluation.metrics);
   if (!evaluation.aliases.is_null()) report["aliases"] = evaluation.aliases;
   if (!evaluation.sensitivity.is_null()) report["sensitivity"] = evaluation.sensitivity;
   if (!evaluation.intervals.is_null()) report["intervals"] = evaluation.intervals;
@@ -148,9 +159,20 @@ Json make_report(const InputDescription& reference, const InputDescription& esti
   report["warnings"] = Json::array();
   add_input_warnings(report["warnings"], "reference", reference);
   add_input_warnings(report["warnings"], "estimate", estimate);
-  for (const Warning& warning : evaluation.warnings) {
-    report["warnings"].push_back({{"id", warning.id}, {"message", valid_utf8(warning.message)}});
-  }
+  add_warnings(report["warnings"], evaluation.warnings);
+  report["run"] = run_json(run);
+  return report;
+}
+
+Json make_report(const InputDescription& map, const MapEvaluation& evaluation, const RunDescription& run) {
+  Json report = report_head();
+  report["inputs"] = {{"estimate", input_json(map)}};
+  report["parameters"] = to_json(evaluation.options);
+  report["alignment"] = nullptr;
+  report["metrics"] = metrics_json(evaluation.metrics);
+  report["warnings"] = Json::array();
+  add_input_warnings(report["warnings"], "map", map);
+  add_warnings(report["warnings"], evaluation.warnings);
   report["run"] = run_json(run);
   return report;
 }

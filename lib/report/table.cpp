@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "cmap/report/report.hpp"
 #include "report/fairness_table.hpp"
 #include "report/table_text.hpp"
@@ -38,6 +40,11 @@ std::string consistency_remark(const Json& metric) {
                      digits(metric.at("exclude")));
 }
 
+/// The reference's own value; a map alone has none beside it.
+std::string reference_remark(const Json& metric) {
+  return metric.contains("reference") ? fmt::format(", reference {}", digits(metric.at("reference").at("value"))) : "";
+}
+
 /// What a reader needs beside the value: the parameters that matter, or a second number that belongs to it.
 std::string remark(const MetricInfo& info, const Json& metric) {
   const Json& parameters = metric.at("parameters");
@@ -64,9 +71,12 @@ std::string remark(const MetricInfo& info, const Json& metric) {
   if (info.id == "hausdorff") return fmt::format("95 %: {}", digits(metric.at("estimate_to_reference").at("p95")));
   if (info.id == "mean_map_entropy") {
     const Json n_flat = metric.value("n_flat", Json(0));
-    return fmt::format("r {}, reference {}{}", meters(parameters.at("radius_m")),
-                       digits(metric.at("reference").at("value")),
+    return fmt::format("r {}{}{}", meters(parameters.at("radius_m")), reference_remark(metric),
                        n_flat == 0 ? "" : fmt::format(", {} flat left out", with_thousands(n_flat)));
+  }
+  if (info.id == "point_spacing") {
+    return fmt::format("{} places, mean {}{}", with_thousands(metric.at("n")), digits(metric.at("mean")),
+                       reference_remark(metric));
   }
   return "";
 }
@@ -76,7 +86,14 @@ std::string threshold_label(const Json& entry) {
   return fmt::format("{:>10}", fmt::format("<= {}", meters(entry.at("threshold_m"))));
 }
 
-std::string value_rows(const MetricInfo& info, const Json& metric) {
+/// JSON knows no infinity: a fidelity of exact colors is null there and said in a warning.
+std::string shown_value(const Json& report, const MetricInfo& info, const Json& value) {
+  const auto says_infinite = [](const Json& warning) { return warning.at("id") == "color_fidelity_infinite"; };
+  const bool is_infinite = info.id == "color_fidelity" && std::ranges::any_of(report.at("warnings"), says_infinite);
+  return is_infinite ? "infinity" : shown(info, value);
+}
+
+std::string value_rows(const Json& report, const MetricInfo& info, const Json& metric) {
   const std::string unit = shown_unit(info);
   if (metric.contains("per_threshold")) {
     std::string values;
@@ -92,7 +109,7 @@ std::string value_rows(const MetricInfo& info, const Json& metric) {
     }
     return rows;
   }
-  return row(info.title, metric, shown(info, metric.at("value")), unit, remark(info, metric));
+  return row(info.title, metric, shown_value(report, info, metric.at("value")), unit, remark(info, metric));
 }
 
 /// The thresholds above the columns of the metrics that have one value for each.
@@ -107,6 +124,11 @@ std::string input_line(const char* which, const Json& input) {
   return fmt::format("{:<9} {}: {} point{}, {}, color {}\n", which, input.at("path").get<std::string>(),
                      with_thousands(n), n == 1 ? "" : "s", input.at("format").get<std::string>(),
                      input.at("color").get<std::string>());
+}
+
+std::string input_lines(const Json& inputs) {
+  if (!inputs.contains("reference")) return input_line("map", inputs.at("estimate"));
+  return input_line("reference", inputs.at("reference")) + input_line("estimate", inputs.at("estimate"));
 }
 
 std::string alias_lines(const std::string& prefix, const Json& value) {
@@ -139,8 +161,7 @@ std::string alias_lines(const std::string& prefix, const Json& value) {
 }  // namespace
 
 std::string format_table(const Json& report) {
-  std::string table = input_line("reference", report.at("inputs").at("reference")) +
-                      input_line("estimate", report.at("inputs").at("estimate"));
+  std::string table = input_lines(report.at("inputs"));
   std::string_view group;
   bool thresholds_shown = false;
   for (const MetricInfo& info : metric_catalog()) {
@@ -150,7 +171,7 @@ std::string format_table(const Json& report) {
     const Json& metric = report.at("metrics").at(info.id);
     if (info.per_threshold && !thresholds_shown) table += threshold_line(metric);
     thresholds_shown = info.per_threshold;
-    table += value_rows(info, metric);
+    table += value_rows(report, info, metric);
   }
   if (report.contains("aliases")) {
     for (const auto& [tool, record] : report.at("aliases").items())

@@ -20,6 +20,7 @@ const Ids kBeyond{"delta_e", "color_distance_by_range", "color_distance_exposure
 const Ids kGeometry{"chamfer", "accuracy", "fitness", "completeness", "f_score", "overlap", "hausdorff", "rmse"};
 const Ids kDistribution{"average_wasserstein", "spatial_consistency"};
 const Ids kEntropy{"mean_map_entropy"};
+const Ids kDensity{"point_spacing"};
 
 Ids all_of(std::initializer_list<Ids> groups) {
   Ids all;
@@ -32,7 +33,7 @@ Ids ids_of(std::vector<std::string> metrics) { return select_metrics(options_for
 TEST(MetricCatalog, HoldsTheMetricsOfTheDefinitions) {
   Ids ids;
   for (const MetricInfo& metric : metric_catalog()) ids.insert(metric.id);
-  EXPECT_EQ(ids, all_of({kColor, kBeyond, kGeometry, kDistribution, kEntropy}));
+  EXPECT_EQ(ids, all_of({kColor, kBeyond, kGeometry, kDistribution, kEntropy, kDensity}));
   EXPECT_EQ(ids.size(), metric_catalog().size()) << "no id twice";
 }
 
@@ -99,7 +100,8 @@ TEST(SelectMetrics, TakesGroupsAndIds) {
   EXPECT_EQ(ids_of({"geometry"}), kGeometry);
   EXPECT_EQ(ids_of({"distribution"}), kDistribution);
   EXPECT_EQ(ids_of({"mme"}), kEntropy);
-  EXPECT_EQ(ids_of({"all"}), all_of({kColor, kBeyond, kGeometry, kDistribution, kEntropy}));
+  EXPECT_EQ(ids_of({"density"}), kDensity);
+  EXPECT_EQ(ids_of({"all"}), all_of({kColor, kBeyond, kGeometry, kDistribution, kEntropy, kDensity}));
   EXPECT_EQ(ids_of({"delta_e", "chamfer"}), (Ids{"chamfer", "delta_e"}));
   EXPECT_EQ(ids_of({"mme", "mean_map_entropy"}), kEntropy);
 }
@@ -117,12 +119,52 @@ TEST(SelectMetrics, ColorIsRequiredWhereItIsNamed) {
   EXPECT_TRUE(required({"all", "color"}));
 }
 
+Ids map_ids_of(std::vector<std::string> metrics) { return select_map_metrics(options_for(std::move(metrics))).ids; }
+
+const Ids kOfOneMap{"color_consistency", "mean_map_entropy", "point_spacing"};
+
+TEST(SelectMapMetrics, TakesWhatNeedsNoReference) {
+  EXPECT_EQ(map_ids_of({}), kOfOneMap);
+  EXPECT_EQ(map_ids_of({"default"}), kOfOneMap);
+  EXPECT_EQ(map_ids_of({"all"}), kOfOneMap);
+  EXPECT_EQ(map_ids_of({"color"}), Ids{"color_consistency"});
+  EXPECT_EQ(map_ids_of({"mme", "density"}), (Ids{"mean_map_entropy", "point_spacing"}));
+  EXPECT_EQ(map_ids_of({"CCS"}), Ids{"color_consistency"});
+  EXPECT_TRUE(select_map_metrics(options_for({"color"})).color_is_required);
+  EXPECT_FALSE(select_map_metrics(options_for({"all"})).color_is_required);
+}
+
+TEST(SelectMapMetrics, NamesTheReferenceThatIsMissing) {
+  for (const char* name : {"chamfer", "LCR", "geometry", "distribution", "color_psnr"}) {
+    EXPECT_EQ(test::refusal_of<UsageError>([&] {
+                map_ids_of({"mme", name});
+              }),
+              std::string("metrics: ") + name +
+                  " needs a reference map, which is missing; without one there are color_consistency, "
+                  "mean_map_entropy, point_spacing");
+  }
+  EXPECT_THAT(test::refusal_of<UsageError>([] { map_ids_of({"lidar"}); }), HasSubstr("\"lidar\" is unknown"));
+}
+
+TEST(SelectMapMetrics, RefusesOptionsThatNeedAReference) {
+  const auto refusal = [](auto&& change) {
+    EvaluationOptions options;
+    change(options);
+    return test::refusal_of<UsageError>([&] { select_map_metrics(options); });
+  };
+  EXPECT_EQ(refusal([](auto& o) { o.align = "icp"; }), "align: needs a reference map, which is missing");
+  EXPECT_THAT(refusal([](auto& o) { o.as = {"open3d"}; }), HasSubstr("as: needs"));
+  EXPECT_THAT(refusal([](auto& o) { o.bootstrap = 100; }), HasSubstr("bootstrap: needs"));
+  EXPECT_THAT(refusal([](auto& o) { o.observed = Observed::kAuto; }), HasSubstr("observed: needs"));
+  EXPECT_THAT(refusal([](auto& o) { o.sensitivity = true; }), HasSubstr("sensitivity: needs"));
+}
+
 TEST(SelectMetrics, RefusesAnUnknownName) {
-  EXPECT_THAT(
-      test::refusal_of<UsageError>([] {
-        ids_of({"geometry", "lidar"});
-      }),
-      AllOf(HasSubstr("\"lidar\" is unknown"), HasSubstr("distribution, mme, all"), HasSubstr("color_fidelity")));
+  EXPECT_THAT(test::refusal_of<UsageError>([] {
+                ids_of({"geometry", "lidar"});
+              }),
+              AllOf(HasSubstr("\"lidar\" is unknown"), HasSubstr("distribution, mme, density, all"),
+                    HasSubstr("color_fidelity")));
 }
 
 }  // namespace

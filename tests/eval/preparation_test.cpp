@@ -137,7 +137,8 @@ TEST(Preparation, WarnsOfBoxesApart) {
 /// A hundred points of a square meter, and one that may be far from them.
 PointCloud square_with(const Eigen::Vector3f& last) {
   std::vector<Eigen::Vector3f> points;
-  for (int i = 0; i < 100; ++i) points.emplace_back(0.1f * static_cast<float>(i % 10), 0.1f * static_cast<float>(i / 10), 0.0f);
+  for (int i = 0; i < 100; ++i)
+    points.emplace_back(0.1f * static_cast<float>(i % 10), 0.1f * static_cast<float>(i / 10), 0.0f);
   points.push_back(last);
   return gray_map(points);
 }

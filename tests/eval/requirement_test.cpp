@@ -87,6 +87,29 @@ TEST(Requirement, ANullFailsWhateverTheComparison) {
   EXPECT_FALSE(outcome("color_fidelity.whatever>=0").holds) << "a metric without a value has no other fields";
 }
 
+TEST(Requirement, AnInfiniteFidelityIsBestOfAll) {
+  Evaluation exact = evaluation();
+  exact.warnings.push_back({"color_fidelity_infinite", "every color is exact"});
+  const auto holds = [&](const char* text) { return check(parse_requirement(text, all_metrics()), exact).holds; };
+  for (const char* text : {"CF>=0", "CF>=1e300", "CF>40", "color_fidelity.value>=40"}) EXPECT_TRUE(holds(text)) << text;
+  for (const char* text : {"CF<=1e300", "CF<0", "CF==40"}) EXPECT_FALSE(holds(text)) << text;
+  EXPECT_EQ(check(parse_requirement("CF<=1", all_metrics()), exact).value, INFINITY);
+  EXPECT_FALSE(holds("LCR.conditional>=0")) << "other nulls fail as ever";
+}
+
+TEST(Requirement, OfOneMap) {
+  MapEvaluation map{.map = IndexedMap(test::gray_map({{0, 0, 0}}))};
+  map.metrics.push_back({find_metric("point_spacing"), nlohmann::ordered_json{{"value", 0.25}, {"mean", nullptr}}});
+  const auto found = [&](const char* text) { return check(parse_map_requirement(text, {}), map); };
+  EXPECT_TRUE(found("point_spacing<=0.25").holds);
+  EXPECT_FALSE(found("point_spacing<0.25").holds);
+  EXPECT_FALSE(found("point_spacing.mean>=0").holds);
+  EXPECT_EQ(refusal_of<UsageError>([&] { found("LCR>=0.2"); }),
+            "require \"LCR>=0.2\": local_color_recall needs a reference map, which is missing");
+  EXPECT_THAT(refusal_of<UsageError>([&] { parse_map_requirement("MME<=0", options_for({"density"})); }),
+              HasSubstr("mean_map_entropy is not computed; add it to --metrics"));
+}
+
 TEST(Requirement, RefusesWhatIsNoCondition) {
   for (const char* text : {"", "LCR", "LCR>=", ">=0.2", "LCR=0.2", "LCR=>0.2", "LCR>=0.2 m", "LCR>=0.2,CD<=1", "LCR!=1",
                            "LCR>=abc", "LCR..x>=1", "accuracy@<=1"}) {

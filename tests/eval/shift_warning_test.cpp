@@ -22,8 +22,7 @@ PointCloud map_at(const Eigen::Vector3d& shift) {
 
 /// What is said of two maps and the files they came from.
 std::vector<std::string> said(const PointCloud& reference, const PointCloud& estimate,
-                              const std::filesystem::path& reference_file,
-                              const std::filesystem::path& estimate_file) {
+                              const std::filesystem::path& reference_file, const std::filesystem::path& estimate_file) {
   Evaluation evaluation = evaluate(reference, estimate, options_for({"chamfer"}));
   warn_about_shifts(evaluation, reference_file, estimate_file);
   std::vector<std::string> messages;

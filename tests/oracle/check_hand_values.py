@@ -97,6 +97,7 @@ HAND = {
         "color_consistency.exclude": None, "color_consistency.median": None, "color_consistency.n_singletons": 1,
         "color_distance_exposure_free.value": None, "average_wasserstein.value": None, "spatial_consistency.value": None,
         "mean_map_entropy.value": None, "mean_map_entropy.n_left_out": 1, "mean_map_entropy.n_flat": 0,
+        "point_spacing.value": None, "point_spacing.n": 1, "point_spacing.n_copies": 0,
     },
     "authors_example": {
         "color_distance.value": sqrt(1.36) / 10, "color_fidelity.value": -20 * log10(sqrt(1.36) / 10),
@@ -139,7 +140,7 @@ HAND = {
     "entropy": {
         "mean_map_entropy.value": 1.5 * log(2 * pi * e) + 0.5 * log(0.064), "mean_map_entropy.n": 1,
         "mean_map_entropy.n_left_out": 6, "mean_map_entropy.reference.value": None, "mean_map_entropy.reference.n_left_out": 7,
-        "mean_map_entropy.n_flat": 0,
+        "mean_map_entropy.n_flat": 0, "point_spacing.value": 1, "point_spacing.mean": 1, "point_spacing.n": 7,
     },
     "color_gate": {
         "color_distance.value": 0.2, "color_distance.n_estimate": 1, "color_distance.n_unmatched_estimate": 1,

@@ -66,6 +66,7 @@ def structure_metrics(ref, est, origin, o):
         "average_wasserstein": structure.average_wasserstein(distances),
         "spatial_consistency": structure.spatial_consistency(distances, o["scs-radius"]),
         "mean_map_entropy": structure.mean_map_entropy(est - origin, ref - origin, o["mme-radius"], o["mme-min-neighbors"]),
+        "point_spacing": structure.point_spacing(est, ref),
     }
 
 

@@ -1,5 +1,6 @@
 """Metrics of local Gaussians: average Wasserstein distance, spatial consistency, mean map entropy."""
 import numpy as np
+from scipy.spatial import cKDTree
 
 from geometry import mean, quantile
 from neighbors import float_steps, pairs_within, voxel_groups
@@ -84,3 +85,16 @@ def map_entropy(offsets, radius, min_neighbors):
 def mean_map_entropy(est, ref, radius, min_neighbors):
     """MME of the estimate, and of the reference beside it."""
     return {**map_entropy(est, radius, min_neighbors), "reference": map_entropy(ref, radius, min_neighbors)}
+
+
+def spacing(points):
+    """Distance from every place to the nearest other one; points of equal coordinates are one place."""
+    places = np.unique(points, axis=0)
+    distance = cKDTree(places).query(places, k=2)[0][:, 1] if len(places) > 1 else np.empty(0)
+    median = float(np.median(distance)) if len(distance) else None
+    return {"value": median, "mean": mean(distance), "n": len(places), "n_copies": len(points) - len(places)}
+
+
+def point_spacing(est, ref):
+    """Point spacing of the estimate, and of the reference beside it."""
+    return {**spacing(est), "reference": spacing(ref)}

@@ -64,6 +64,17 @@ TEST(PackMap, WithoutColorThereAreOnlyPositionsAndDistances) {
   EXPECT_EQ(packed.bytes.size(), 3u * 3u + 2u);
 }
 
+TEST(PackMap, OneMapHasPositionsAndColors) {
+  const test::Clouds clouds{test::cloud_of({{0, 0, 0}, {0.3f, 0, 0}}, {{10, 0, 255}, {8, 0, 0}}),
+                            test::cloud_of({{0, 0, 0}})};
+  const MapPair pair = clouds.pair();
+  const PackedMap alone = pack_map(pair.reference, all_slots(pair));
+  EXPECT_EQ(alone.description.at("planes").size(), 6u);
+  const PackedMap of_pair = pack_map(pair.reference_to_estimate(), nullptr, all_slots(pair));
+  EXPECT_EQ(of_pair.bytes.substr(0, alone.bytes.size()), alone.bytes);
+  EXPECT_EQ(alone.bytes.size(), 2u * (3u * 3u + 3u));
+}
+
 TEST(PackMap, AWideMapHasWiderSteps) {
   const test::Clouds clouds{test::cloud_of({{0, 0, 0}, {1e6f, 0, 0}}), test::cloud_of({{0, 0, 0}})};
   const MapPair pair = clouds.pair();

@@ -36,7 +36,7 @@ TEST(Report, HasEverySectionInOrder) {
   const Json report = report_of(kReference, kEstimate);
   EXPECT_THAT(keys(report),
               ElementsAre("schema", "tool", "inputs", "parameters", "alignment", "metrics", "warnings", "run"));
-  EXPECT_EQ(report.at("schema"), "cmap.report/1");
+  EXPECT_EQ(report.at("schema"), "cmap.report/2");
   EXPECT_EQ(report.at("tool"), Json({{"name", "cmap_eval"}, {"version", kVersion}}));
 }
 
@@ -103,11 +103,25 @@ TEST(Report, EveryMetricCarriesUnitDirectionSymbolAndParameters) {
     SCOPED_TRACE(info.id);
     const Json& record = metrics.at(std::string(info.id));
     EXPECT_EQ(record.at("unit"), info.unit);
-    EXPECT_EQ(record.at("better"), info.better);
+    EXPECT_EQ(record.at("better"), info.better.empty() ? Json(nullptr) : Json(info.better));
     EXPECT_EQ(record.at("symbol"), info.symbol);
     EXPECT_TRUE(record.at("parameters").is_object());
     EXPECT_EQ(record.contains("per_threshold"), info.per_threshold);
   }
+}
+
+TEST(Report, OfOneMapHasNoReferenceAndNoAlignment) {
+  const Json report = test::map_report_of(kReference);
+  EXPECT_THAT(keys(report),
+              ElementsAre("schema", "tool", "inputs", "parameters", "alignment", "metrics", "warnings", "run"));
+  EXPECT_THAT(keys(report.at("inputs")), ElementsAre("estimate"));
+  EXPECT_EQ(report.at("inputs").at("estimate").at("path"), "map.ply");
+  EXPECT_TRUE(report.at("alignment").is_null());
+  EXPECT_THAT(keys(report.at("metrics")), ElementsAre("color_consistency", "mean_map_entropy", "point_spacing"));
+  EXPECT_FALSE(report.at("metrics").at("color_consistency").contains("reference"));
+  EXPECT_EQ(report.at("metrics").at("point_spacing"),
+            parsed(R"({"value": 2.0, "mean": 2.0, "n": 2, "n_copies": 0, "unit": "m", "better": null, "symbol": "",
+                       "parameters": {}})"));
 }
 
 TEST(Report, HasAliasesOnlyWhereAskedFor) {

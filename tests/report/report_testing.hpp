@@ -24,4 +24,9 @@ inline nlohmann::ordered_json report_of(const PointCloud& reference, const Point
                      evaluate(reference, estimate, options, T_ref_est), a_run());
 }
 
+/// The report of this map alone.
+inline nlohmann::ordered_json map_report_of(const PointCloud& map, const EvaluationOptions& options = {}) {
+  return make_report(described("map.ply", map), evaluate_map(map, options), a_run());
+}
+
 }  // namespace cmap::test

@@ -254,6 +254,25 @@ TEST(Table, OtherToolsFollowByName) {
   EXPECT_THAT(line_with(table, "@ 0.2 m fitness"), ContainsRegex(" 0(.0)?$"));
 }
 
+TEST(Table, OfOneMap) {
+  EvaluationOptions options;
+  options.mme_radius_m = 0.5;
+  const std::string table = format_table(test::map_report_of(painted_sheet(4000, 1), options));
+  EXPECT_THAT(table, StartsWith("map       map.ply: 4,000 points, PLY ascii, color u8\n\ncolor\n"));
+  EXPECT_THAT(line_with(table, "CCS"), ContainsRegex("↓ +[0-9.]+ unit RGB\\^2"));
+  EXPECT_THAT(line_with(table, "MME"), ContainsRegex("nats +r 0.5 m$")) << "no reference beside it";
+  EXPECT_THAT(table, HasSubstr("\ndensity\n"));
+  EXPECT_THAT(line_with(table, "point spacing"),
+              ContainsRegex("point spacing +[0-9.]+ m +4,000 places, mean [0-9.]+$"));
+}
+
+TEST(Table, AnInfiniteFidelityIsNoDash) {
+  const PointCloud map = gray_map({{0, 0, 0}, {1, 0, 0}});
+  EXPECT_THAT(line_with(format_table(report_of(map, map)), "CF"), ContainsRegex("↑ +infinity dB$"));
+  EXPECT_THAT(line_with(format_table(report_of(map, small_map({{0, 0, 0}}))), "CF"), ContainsRegex("↑ +-"))
+      << "no color";
+}
+
 TEST(Table, WarningsStandAtTheEnd) {
   const std::string table =
       format_table(report_of(gray_map({{0, 0, 0}, {1, 0, 0}}), gray_map({{50, 0, 0}, {51, 0, 0}})));

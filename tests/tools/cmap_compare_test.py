@@ -148,10 +148,46 @@ class Compare(CmapEval):
         self.refused(USAGE, f"{self.a} and {other} define chamfer differently", self.a, other)
         self.refused(USAGE, "different parameters", other, "--baseline", self.report("c.json", self.reference, self.estimate, "--lcr-tau", "0.3"))
 
+    def earlier(self, report):
+        """Turns a report into one of cmap 0.1.0."""
+        report.update(schema="cmap.report/1")
+        report["tool"]["version"] = "0.1.0"
+        report["parameters"].pop("ccs-singletons", None)
+        report["parameters"]["ccs-voxel"] = 0.2
+        consistency = report["metrics"]["color_consistency"]
+        consistency["parameters"] = {"voxel_m": 0.2, "min_points": 2}
+
+    def test_reports_of_an_earlier_version(self):
+        """What did not change compares, with a word; what did is refused, with the way out."""
+        earlier = self.changed("earlier.json", self.earlier)
+        self.refused(USAGE, ["0.1.0", "ccs-singletons", "--metrics"], earlier, self.b)
+        result = self.run_program(earlier, self.b, "--metrics", "geometry", program=(COMPARE,))
+        self.assertEqual(result.returncode, DONE, result.stderr.decode())
+        self.assertRegex(result.stderr.decode(), r"^cmap_compare: warning: version of cmap: 0\.1\.0 for earlier; ")
+        self.assertIn("within rounding of the threshold", result.stderr.decode())
+        self.assertRegex(result.stdout.decode(), r"\n *version of cmap: 0\.1\.0 for earlier; ")
+        self.assertRegex(result.stdout.decode(), r"Chamfer distance +CD# +↓ +m +4.375\+ +0\*")
+        same = self.changed("same.json", lambda r: r["tool"].update(version="0.0.3"))
+        result = self.run_program(self.a, same, program=(COMPARE,))
+        self.assertEqual(result.returncode, DONE, result.stderr.decode())
+        self.assertIn("version of cmap: 0.0.3 for same; ", result.stderr.decode())
+        self.assertEqual(self.run_program(self.a, self.b, program=(COMPARE,)).stderr, b"", "one version: no word")
+
+    def test_one_map_each(self):
+        alone = [self.report(f"{name}.json", path) for name, path in (("x", self.reference), ("y", self.estimate))]
+        table = self.compare(*alone)
+        self.assertRegex(table, r"point spacing +m +[0-9.]+ +[0-9.]+\n")
+        self.assertNotIn("SHA-256", table)
+        for form in ("markdown", "csv", "latex", "html"):
+            self.compare(*alone, "--format", form)
+        self.compare(*alone, "--figure", self.outputs / "f.svg")
+        (self.outputs / "f.svg").unlink()
+        self.refused(USAGE, "about a map alone", self.a, alone[0])
+
     def test_refuses_what_is_no_report(self):
         self.refused(USAGE, "is no report of cmap_eval: its schema is missing", self.a, self.input("x.json", "{}"))
-        newer = self.changed("x.json", lambda r: r.update(schema="cmap.report/2"))
-        self.refused(USAGE, f'{newer}: is no report of cmap_eval: its schema is "cmap.report/2"', self.a, newer)
+        newer = self.changed("x.json", lambda r: r.update(schema="cmap.report/3"))
+        self.refused(USAGE, f'{newer}: is no report of cmap_eval: its schema is "cmap.report/3"', self.a, newer)
         self.refused(USAGE, "is no report", SOURCE / "configs/report.schema.json", self.a)
         self.refused(INPUT, "parse error at line", self.a, self.input("x.json", self.a.read_text()[:500]))
         self.refused(INPUT, "cannot be read as a report", self.a, self.inputs / "none.json")

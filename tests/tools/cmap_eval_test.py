@@ -156,16 +156,17 @@ class Results(CmapEval):
                 )
                 self.expect_numbers(report["metrics"], expected["metrics"], folder.name)
 
-    def test_the_example_of_the_help_runs(self):
+    def test_the_examples_of_the_help_run(self):
         """From the root of the source, or a folder that looks like it."""
         help_text = self.run_program("--help").stdout.decode()
-        example = next(line for line in help_text.splitlines() if line.startswith("  cmap_eval "))
+        examples = [line for line in help_text.splitlines() if line.startswith("  cmap_eval ")]
+        self.assertEqual(len(examples), 2, "a pair and one map")
         (self.folder / "data_samples").symlink_to(SOURCE / "data_samples")
         (self.folder / "bin").mkdir()
         (self.folder / "bin/cmap_eval").symlink_to(PROGRAM)
         result = self.run_program(
-            "-c",
-            example,
+            "-ec",
+            "\n".join(examples),
             program=["bash"],
             cwd=self.folder,
             environment={"PATH": f"{self.folder}/bin:{os.environ['PATH']}"},
@@ -173,6 +174,7 @@ class Results(CmapEval):
         self.assertEqual(result.returncode, DONE, result.stderr.decode())
         self.assertIn("LCR", result.stdout.decode())
         self.check_report((self.folder / "report.json").read_text())
+        self.check_report((self.folder / "map.json").read_text())
 
     def test_the_help_names_every_option_and_exit_code(self):
         help_text = self.run_program("--help").stdout.decode()
@@ -353,7 +355,7 @@ class Results(CmapEval):
             return report
 
         for report in (
-            broken("schema", value="cmap.report/2"),
+            broken("schema", value="cmap.report/1"),
             broken("extra", value=1),
             broken("warnings"),
             broken("inputs", "reference", "sha256", value="abc"),

@@ -208,9 +208,9 @@ class Leaderboard(CmapEval):
         pair = board / "pairs/hill/Coarse"
         report = (pair / "report.json").read_text()
 
-        def record_of_version(version):
+        def record_of(**tool):
             record = json.loads((pair / "pair.json").read_text())
-            record["key"]["tool"]["version"] = version
+            record["key"]["tool"].update(tool)
             (pair / "pair.json").write_text(json.dumps(record))
 
         damages = {
@@ -218,7 +218,8 @@ class Leaderboard(CmapEval):
             "report.html is not as it was written": lambda: (pair / "report.html").write_text("<html>"),
             "parse error": lambda: (pair / "pair.json").write_text('{"schema": '),
             "pair.json is not as it was written": lambda: (pair / "pair.json").write_text("[]"),
-            "of another version": lambda: record_of_version("0.0.1"),
+            "it is of another version": lambda: record_of(version="0.1.0"),
+            "of another version": lambda: record_of(schema="cmap.report/1"),
             "cannot be read": lambda: (pair / "report.json").unlink(),
         }
         for says, damage in damages.items():

@@ -146,7 +146,7 @@ class Recon(unittest.TestCase):
             self.assertLess(np.abs(error).max(), 0.5, "VGGT's drift within a session is a few percent of 10 m")
         report = json.loads((self.output / "report.json").read_text())
         self.assertEqual((report["map"]["points"], report["warnings"]), (n, []))
-        self.assertEqual(json.loads((self.output / "evaluation.json").read_text())["schema"], "cmap.report/1")
+        self.assertEqual(json.loads((self.output / "evaluation.json").read_text())["schema"], "cmap.report/2")
 
     def test_same_bytes_again_and_for_any_number_of_threads(self):
         runs = {name: self.folder / name for name in ("one", "two", "again")}

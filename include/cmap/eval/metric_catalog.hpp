@@ -14,12 +14,13 @@ struct MetricInfo {
   std::string_view id;
   std::string_view symbol;  ///< the paper's, or empty
   std::string_view title;   ///< for people
-  std::string_view group;   ///< color, color+, geometry, distribution, mme
+  std::string_view group;   ///< color, color+, geometry, distribution, mme, density
   std::string_view unit;
-  std::string_view better;  ///< "lower", "higher"
+  std::string_view better;  ///< "lower", "higher"; empty where neither is
   bool needs_color;
   bool per_threshold;           ///< has one value for each of `thresholds`
   std::string_view definition;  ///< a sentence or two for people
+  bool needs_reference = true;  ///< else it has a value for a map alone, and of a pair for each map
 };
 
 /// All metrics in the order of reports.
@@ -37,9 +38,14 @@ struct MetricSelection {
   bool contains(std::string_view id) const { return ids.contains(id); }
 };
 
-/// Groups: color, color+ (color and what goes beyond the paper), geometry, distribution, mme, all, and default, which
-/// is color, geometry and distribution as far as the maps allow.
+/// Groups: color, color+ (color and what goes beyond the paper), geometry, distribution, mme, density, all; default is
+/// color, geometry and distribution as far as the maps allow.
 /// Throws UsageError for an unknown name.
 MetricSelection select_metrics(const EvaluationOptions& options);
+
+/// The same for one map without a reference: of each group what needs none; default is all of that.
+/// Throws UsageError also for metrics, groups and other options (align, as, bootstrap, observed, sensitivity) that mean
+/// nothing without a reference.
+MetricSelection select_map_metrics(const EvaluationOptions& options);
 
 }  // namespace cmap

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "cmap/eval/evaluation.hpp"
+#include "cmap/eval/map_evaluation.hpp"
 
 namespace cmap {
 
@@ -21,7 +21,10 @@ struct Requirement {
 /// syntax, unknown metric, a metric that is not computed, a missing or unlisted threshold.
 Requirement parse_requirement(const std::string& text, const EvaluationOptions& options);
 
-/// What a requirement found; a null value fails it.
+/// The same for one map without a reference.
+Requirement parse_map_requirement(const std::string& text, const EvaluationOptions& options);
+
+/// What a requirement found; a null value fails it, but for a color fidelity of exact colors, which is infinite.
 struct RequirementOutcome {
   bool holds;
   std::optional<double> value;
@@ -29,5 +32,6 @@ struct RequirementOutcome {
 
 /// Throws UsageError where the record has no such field.
 RequirementOutcome check(const Requirement& requirement, const Evaluation& evaluation);
+RequirementOutcome check(const Requirement& requirement, const MapEvaluation& evaluation);
 
 }  // namespace cmap

@@ -12,15 +12,16 @@
 
 namespace cmap {
 
-/// A report that an evaluation left in a file.
+/// A report that an evaluation left in a file, of a pair or of one map.
 struct SavedReport {
   std::string path;
   std::string name;  ///< heads its column
   nlohmann::ordered_json json;
 };
 
+/// Reads a report of this version or an earlier one; options that an earlier one did not know are filled in.
 /// Throws InputError for a file that is missing, not JSON or damaged, naming file, place and reason; UsageError for
-/// what is no report of schema cmap.report/1.
+/// what is no report, or of a schema that this version does not know.
 SavedReport read_report(const std::filesystem::path& path);
 
 /// Throws InputError naming `source` and the member that is missing or of another type than in a report.
@@ -30,14 +31,17 @@ void check_report(const nlohmann::ordered_json& report, const std::string& sourc
 /// names are not one for each report, repeat or are empty, or a file is given twice.
 void name_reports(std::vector<SavedReport>& reports, const std::vector<std::string>& names);
 
-/// Throws UsageError naming two reports and what differs: parameters, definitions of a metric, or the reference map.
-/// Which metrics were chosen may differ, as it changes no value.
-void require_comparable(const std::vector<SavedReport>& reports);
-
 struct ComparisonOptions {
   std::vector<std::string> metrics;     ///< groups, ids or symbols; empty: all there are
   std::optional<std::size_t> baseline;  ///< index of the report that the others are measured against
 };
+
+/// Throws UsageError naming two reports and what differs: parameters, definitions of a metric, or the reference map.
+/// Only what bears on the metrics of the options counts. Which metrics were chosen may differ, as it changes no value.
+void require_comparable(const std::vector<SavedReport>& reports, const ComparisonOptions& options = {});
+
+/// What a reader must know where comparable reports come from different versions of cmap; empty where from one.
+std::vector<std::string> version_notes(const std::vector<SavedReport>& reports, const ComparisonOptions& options);
 
 /// "text", "markdown", "csv", "latex", "html".
 enum class ComparisonFormat { kText, kMarkdown, kCsv, kLatex, kHtml };

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "cmap/eval/evaluation.hpp"
+#include "cmap/eval/map_evaluation.hpp"
 #include "cmap/io/output_file.hpp"
 
 namespace cmap {
@@ -12,5 +12,8 @@ namespace cmap {
 /// surfaces. `report` is make_report's of this evaluation; it is in the page as it is. The same bytes for any number of
 /// threads. The caller commits the file.
 void write_html_report(const nlohmann::ordered_json& report, const Evaluation& evaluation, OutputFile& file);
+
+/// The same for one map: no histograms of what needs a second one.
+void write_html_report(const nlohmann::ordered_json& report, const MapEvaluation& evaluation, OutputFile& file);
 
 }  // namespace cmap

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "cmap/eval/evaluation.hpp"
+#include "cmap/eval/map_evaluation.hpp"
 #include "cmap/io/point_cloud_file.hpp"
 
 namespace cmap {
@@ -31,11 +31,19 @@ struct RunDescription {
   std::string simd;
 };
 
-/// The report, schema cmap.report/1 (DESIGN; configs/report.schema.json). Numbers round-trip; missing ones are null.
+/// What reports say of themselves; it changes with the meaning of a member or the definition of a metric.
+inline constexpr const char* kReportSchema = "cmap.report/2";
+
+/// The report (DESIGN; configs/report.schema.json). Numbers round-trip; missing ones are null.
 nlohmann::ordered_json make_report(const InputDescription& reference, const InputDescription& estimate,
                                    const Evaluation& evaluation, const RunDescription& run);
 
-/// A report as a table for people: groups, symbols, values with their units and directions, warnings below.
+/// The report of one map: no inputs.reference, alignment null.
+nlohmann::ordered_json make_report(const InputDescription& map, const MapEvaluation& evaluation,
+                                   const RunDescription& run);
+
+/// A report, of a pair or of one map, as a table for people: groups, symbols, values with their units and directions,
+/// warnings below.
 std::string format_table(const nlohmann::ordered_json& report);
 
 }  // namespace cmap

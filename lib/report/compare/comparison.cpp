@@ -1,16 +1,15 @@
 #include "cmap/report/comparison.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "report/compare/comparison_scores.hpp"
 #include "report/compare/gain_intervals.hpp"
 #include "report/compare/html_tables.hpp"
 #include "report/compare/score_table.hpp"
+#include "report/compare/version_notes.hpp"
 #include "report/table_text.hpp"
 
 namespace cmap {
@@ -92,26 +91,21 @@ ScoreTable gain_table(const ComparisonScores& comparison, std::size_t baseline) 
   return table;
 }
 
-/// "a: none; b: given" where the reports differ in it.
-void note_difference(std::vector<std::string>& notes, const char* what, const std::vector<SavedReport>& reports,
-                     const Json::json_pointer& place) {
-  std::map<std::string, std::vector<std::string>> groups;
-  for (const SavedReport& report : reports) groups[report.json.at(place).get<std::string>()].push_back(report.name);
-  if (groups.size() < 2) return;
-  std::vector<std::string> parts;
-  for (const auto& [value, names] : groups) parts.push_back(fmt::format("{} for {}", value, fmt::join(names, ", ")));
-  notes.push_back(fmt::format("{}: {}", what, fmt::join(parts, "; ")));
-}
-
-std::vector<std::string> notes_on(const std::vector<SavedReport>& reports, ComparisonFormat format) {
+std::vector<std::string> notes_on(const std::vector<SavedReport>& reports, const ComparisonOptions& options,
+                                  ComparisonFormat format) {
   std::vector<std::string> notes;
   if (format == ComparisonFormat::kText) notes.emplace_back("* best, + second best; - no value");
-  const Json& reference = reports.front().json.at("inputs").at("reference");
-  notes.push_back(fmt::format("reference {}: {} points, SHA-256 {}", reference.at("path").get<std::string>(),
-                              with_thousands(reference.at("finite_points")),
-                              reference.at("sha256").get<std::string>().substr(0, 12)));
-  note_difference(notes, "alignment", reports, Json::json_pointer("/alignment/method"));
-  note_difference(notes, "version of cmap", reports, Json::json_pointer("/tool/version"));
+  const Json& inputs = reports.front().json.at("inputs");
+  if (inputs.contains("reference")) {
+    const Json& reference = inputs.at("reference");
+    notes.push_back(fmt::format("reference {}: {} points, SHA-256 {}", reference.at("path").get<std::string>(),
+                                with_thousands(reference.at("finite_points")),
+                                reference.at("sha256").get<std::string>().substr(0, 12)));
+    if (auto alignments = difference(reports, Json::json_pointer("/alignment/method"))) {
+      notes.push_back(fmt::format("alignment: {}", *alignments));
+    }
+  }
+  for (std::string& note : version_notes(reports, options)) notes.push_back(std::move(note));
   return notes;
 }
 
@@ -157,7 +151,7 @@ std::string format_comparison(const std::vector<SavedReport>& reports, const Com
     tables.push_back(gain_table(comparison, *options.baseline));
     if (auto intervals = gain_interval_table(reports, comparison, *options.baseline)) tables.push_back(*intervals);
   }
-  tables.front().notes = notes_on(reports, format);
+  tables.front().notes = notes_on(reports, options, format);
   switch (format) {
     case ComparisonFormat::kMarkdown:
       return typeset(tables, TableFormat::kMarkdown);

@@ -129,7 +129,7 @@ const std::string& Runner::hash_of_reference(const std::string& path) {
 }
 
 Json Runner::key_for(const std::string& reference, const std::string& estimate) {
-  return {{"tool", {{"version", kVersion}, {"schema", "cmap.report/1"}}},
+  return {{"tool", {{"version", kVersion}, {"schema", kReportSchema}}},
           {"reference", {{"path", reference}, {"sha256", hash_of_reference(reference)}}},
           {"estimate", {{"path", estimate}, {"sha256", sha256_of_file(file(estimate))}}},
           {"parameters", to_json(manifest_.options)}};

@@ -6,6 +6,8 @@
 #include "cmap/core/error.hpp"
 #include "cmap/io/json_text.hpp"
 #include "cmap/report/comparison.hpp"
+#include "cmap/report/report.hpp"
+#include "report/compare/earlier_reports.hpp"
 
 namespace cmap {
 namespace {
@@ -13,8 +15,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Type = Json::value_t;
 namespace fs = std::filesystem;
-
-constexpr const char* kSchema = "cmap.report/1";
 
 /// A value of a report and where it stands, so that a damaged file is refused with its place.
 class Place {
@@ -43,6 +43,7 @@ class Place {
     return list;
   }
   bool has(const std::string& key) const { return value_.is_object() && value_.contains(key); }
+  void be_null() const { require(value_.is_null(), "null"); }
   void be_object() const { require(value_.is_object(), "an object"); }
   void be_text() const { require(value_.is_string(), "text"); }
   void be_number() const { require(value_.is_number(), "a number"); }
@@ -84,6 +85,11 @@ void check_record(const Place& record) {
   }
 }
 
+void check_input(const Place& input) {
+  for (const char* text : {"path", "sha256"}) input[text].be_text();
+  input["finite_points"].be_count();
+}
+
 void check_curve(const Place& curve) {
   for (const char* axis : {"tau", "value"}) {
     for (const Place& number : curve[axis].entries()) number.be_number();
@@ -111,17 +117,18 @@ void require_distinct(const std::vector<SavedReport>& reports) {
 
 void check_report(const Json& report, const std::string& source) {
   const Place top(report, source);
-  if (!top.has("schema") || report.at("schema") != kSchema) {
-    throw UsageError(fmt::format("{}: is no report of cmap_eval: its schema is {}, expected \"{}\"", source,
-                                 top.has("schema") ? report.at("schema").dump() : "missing", kSchema));
+  if (!top.has("schema") || !is_known_schema(report.at("schema"))) {
+    throw UsageError(fmt::format("{}: is no report of cmap_eval: its schema is {}, expected \"{}\" or an earlier one",
+                                 source, top.has("schema") ? report.at("schema").dump() : "missing", kReportSchema));
   }
   top["tool"]["version"].be_text();
   top["parameters"].be_object();
-  top["alignment"]["method"].be_text();
-  for (const char* which : {"reference", "estimate"}) {
-    const Place input = top["inputs"][which];
-    for (const char* text : {"path", "sha256"}) input[text].be_text();
-    input["finite_points"].be_count();
+  check_input(top["inputs"]["estimate"]);
+  if (top["inputs"].has("reference")) {
+    check_input(top["inputs"]["reference"]);
+    top["alignment"]["method"].be_text();
+  } else {
+    top["alignment"].be_null();
   }
   for (const auto& [id, record] : top["metrics"].members()) {
     check_record(record);
@@ -137,6 +144,7 @@ SavedReport read_report(const fs::path& path) {
     throw InputError(error.what());
   }
   check_report(report.json, path.string());
+  complete_earlier_report(report.json);
   return report;
 }
 

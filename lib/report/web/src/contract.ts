@@ -17,9 +17,11 @@ export interface InputRecord {
 export interface Report {
   schema: string;
   tool: { name: string; version: string };
+  /** `estimate` alone where one map was evaluated. */
   inputs: Record<string, InputRecord>;
   parameters: Json;
-  alignment: Json;
+  /** Null where one map was evaluated. */
+  alignment: Json | null;
   metrics: Record<string, Json>;
   aliases?: Json;
   intervals?: Json;

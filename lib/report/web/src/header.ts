@@ -31,6 +31,10 @@ function inputBlock(role: string, input: InputRecord): HTMLElement {
   );
 }
 
+function inputBlocks({ inputs }: Report): HTMLElement[] {
+  return Object.entries(inputs).map(([role, input]) => inputBlock(inputs.reference ? role : 'map', input));
+}
+
 function warningList(report: Report): HTMLElement | undefined {
   if (report.warnings.length === 0) return undefined;
   const items = report.warnings.map(({ id, message }) => element('li', { 'data-warning': id }, message));
@@ -55,7 +59,7 @@ export function showHeader(head: HTMLElement, report: Report, title: string, tex
         themeButton(),
       ),
     ),
-    element('div', { class: 'inputs' }, ...Object.entries(report.inputs).map(([role, input]) => inputBlock(role, input))),
+    element('div', { class: 'inputs' }, ...inputBlocks(report)),
   );
   const warnings = warningList(report);
   if (warnings) head.append(warnings);

@@ -45,12 +45,17 @@ async function showReport(report: Report, page: Page | undefined): Promise<void>
   showHeader(section('head'), report, page?.title ?? 'Map evaluation', reportText());
   const frame = page && showFirstFrame(page);
   await fill('metrics', (place) => {
-    const table = metricTable(metricRows(report, page));
+    const caption = report.inputs.reference ? 'Metrics of the estimate against the reference' : 'Metrics of the map';
+    const table = metricTable(metricRows(report, page), caption);
     place.append(element('div', { class: 'table-frame' }, table));
   });
   // The map comes first. A page in the background draws no frame: there the rest does not wait for one.
   await Promise.race([frame, new Promise((resolve) => setTimeout(resolve, 2000))]);
-  await fill('charts', (place) => showCharts(place, chartSpecs(report, page?.distributions ?? [])));
+  await fill('charts', (place) => {
+    const charts = chartSpecs(report, page?.distributions ?? []);
+    if (charts.length > 0) showCharts(place, charts);
+    else place.hidden = true; // as of one map
+  });
   await fill('run', (place) => showRun(place, report));
   await frame;
   document.documentElement.dataset.ready = '';

@@ -18,6 +18,8 @@ export interface MetricRow {
   qualifier: string;
   key: Record<string, string>;
   value: number | null;
+  /** No value because JSON knows no infinity. */
+  infinite: boolean;
   /** Why there is no value. */
   reason: string;
   facts: [string, JsonValue][];
@@ -107,11 +109,11 @@ export function metricRows(report: Report, page: Page | undefined): MetricRow[] 
   const rows: MetricRow[] = [];
   for (const [id, record] of Object.entries(report.metrics)) {
     const metric = describe(id, record, page);
-    const warning = report.warnings.find((item) => item.id.startsWith(id))?.message;
+    const warning = report.warnings.find((item) => item.id.startsWith(id));
     entries(record).forEach(({ entry, qualifier, key }, i) => {
       const value = typeof entry.value === 'number' ? entry.value : null;
       const common = entry === record ? [] : facts(record);
-      const reason = value === null ? (warning ?? 'The maps do not support this value.') : '';
+      const reason = value === null ? (warning?.message ?? 'The maps do not support this value.') : '';
       rows.push({
         metric,
         order: rows.length,
@@ -119,6 +121,7 @@ export function metricRows(report: Report, page: Page | undefined): MetricRow[] 
         qualifier,
         key,
         value,
+        infinite: value === null && warning?.id === `${id}_infinite`,
         reason,
         facts: [...fairness(report, id, entry.threshold_m), ...facts(entry), ...common],
       });

@@ -85,7 +85,9 @@ export function showRun(section: HTMLElement, report: Report): void {
     element('summary', {}, element('h2', { id: 'run-title' }, 'Parameters and run')),
     block('Command', element('pre', {}, String(run.command ?? ''))),
     block('Parameters', factList(Object.entries(parameters))),
-    block('Alignment', factList(flatten(without(alignment, 'T_ref_est'))), matrix(alignment.T_ref_est)),
+    alignment
+      ? block('Alignment', factList(flatten(without(alignment, 'T_ref_est'))), matrix(alignment.T_ref_est))
+      : undefined,
     block('Run', factList(flatten(without(run, 'command', 'stages'))), stageTable(run.stages)),
     aliases && block('Other tools on this pair', ...Object.entries(aliases).map(([tool, record]) => toolBlock(tool, record))),
   );

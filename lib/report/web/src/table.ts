@@ -37,7 +37,8 @@ function sorted(rows: MetricRow[], column: Column, order: Order): MetricRow[] {
 
 function valueCell(row: MetricRow): HTMLElement {
   if (row.value === null) {
-    return element('td', { class: 'value none', 'data-value': 'null', title: row.reason }, dash);
+    const text = row.infinite ? '∞' : dash;
+    return element('td', { class: 'value none', 'data-value': 'null', title: row.reason }, text);
   }
   return element('td', { class: 'value', 'data-value': exact(row.value), title: exact(row.value) }, number(row.value));
 }
@@ -130,7 +131,7 @@ function headerRow(onSort: (column: Column, order: Order) => void): HTMLTableRow
   return element('tr', {}, ...headers);
 }
 
-export function metricTable(rows: MetricRow[]): HTMLTableElement {
+export function metricTable(rows: MetricRow[], caption: string): HTMLTableElement {
   const made = new Map(rows.map((row) => [row, tableRows(row)]));
   const body = element('tbody', {}, ...[...made.values()].flat());
   const table = element('table', { class: 'metrics' });
@@ -138,6 +139,6 @@ export function metricTable(rows: MetricRow[]): HTMLTableElement {
     body.replaceChildren(...sorted(rows, column, order).flatMap((row) => made.get(row)!));
     table.classList.toggle('sorted', order !== 'none');
   });
-  table.append(element('caption', {}, 'Metrics of the estimate against the reference'), element('thead', {}, head), body);
+  table.append(element('caption', {}, caption), element('thead', {}, head), body);
   return table;
 }
