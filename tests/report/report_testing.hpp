@@ -8,7 +8,11 @@
 namespace cmap::test {
 
 inline InputDescription described(const std::string& path, const PointCloud& map) {
-  const FileInfo info{path, "PLY ascii", map.size(), map.size(), std::string(64, 'a'), {}};
+  FileInfo info;
+  info.path = path;
+  info.format = "PLY ascii";
+  info.points = info.finite_points = map.size();
+  info.sha256 = std::string(64, 'a');
   return describe({map, info});
 }
 
