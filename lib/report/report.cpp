@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <tuple>
 
 #include "cmap/align/align.hpp"
 #include "cmap/core/version.hpp"
@@ -118,6 +119,18 @@ void add_warnings(Json& warnings, const std::vector<Warning>& found) {
   }
 }
 
+/// A network's or a LiDAR's intensity is easily exported as a color.
+void warn_of_gray(Json& warnings, const InputDescription& reference, const InputDescription& estimate) {
+  const auto is_colored = [](const InputDescription& map) { return map.color != "none" && !map.file.gray_colors; };
+  for (const auto& [gray, other, which] : {std::tuple(&estimate, &reference, "estimate"), std::tuple(&reference, &estimate, "reference")}) {
+    if (!gray->file.gray_colors || gray->color == "none" || !is_colored(*other)) continue;
+    warnings.push_back({{"id", "gray_colors"},
+                        {"message", fmt::format("every color of the {} is a gray, beside a colored map: is it an intensity, "
+                                                "or were its pictures gray?",
+                                                which)}});
+  }
+}
+
 Json report_head() { return {{"schema", kReportSchema}, {"tool", {{"name", "cmap_eval"}, {"version", kVersion}}}}; }
 
 Json metrics_json(const std::vector<MetricRecord>& records) {
@@ -159,6 +172,7 @@ Json make_report(const InputDescription& reference, const InputDescription& esti
   report["warnings"] = Json::array();
   add_input_warnings(report["warnings"], "reference", reference);
   add_input_warnings(report["warnings"], "estimate", estimate);
+  warn_of_gray(report["warnings"], reference, estimate);
   add_warnings(report["warnings"], evaluation.warnings);
   report["run"] = run_json(run);
   return report;
