@@ -122,6 +122,8 @@ TEST(TransformFile, Npy) {
   all.insert(all.end(), {0, 0, 0, 1});
   for (const char* shape : {"(4, 4)", "(1, 4, 4)", "(16,)", "(1, 16)"}) expect_read(npy(shape, all));
   for (const char* shape : {"(3, 4)", "(12,)"}) expect_read(npy(shape, upper));
+  // Eigen's matrices, which Open3D's Python hands out, lie column by column.
+  expect_read(npy("(4, 4)", {0, 2, 0, 0, -2, 0, 0, 0, 0, 0, 2, 0, 1, 2.5, -3, 1}, "True"));
   std::vector<double> two = all;
   two.insert(two.end(), all.begin(), all.end());
   EXPECT_THAT(refusal(npy("(2, 4, 4)", two)), HasSubstr("2 matrices"));
