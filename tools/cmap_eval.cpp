@@ -32,7 +32,7 @@ using cmap::ExitCode;
 constexpr const char* kDescription =
     "Evaluates an estimated point-cloud map against a reference: color, geometry and distribution metrics. Of one map\n"
     "alone, what needs no reference: color consistency, mean map entropy, point spacing.\n"
-    "Reads PLY, PCD, LAS, NPY, NPZ and text.";
+    "Reads PLY, PCD, LAS, PTS, PTX, text, NPY, NPZ, KITTI .bin, COLMAP points3D, OpenSfM and OBJ without faces.";
 
 constexpr const char* kExample =
     "Examples:\n"

@@ -131,6 +131,22 @@ TEST(Report, HasAliasesOnlyWhereAskedFor) {
   EXPECT_FALSE(report_of(kReference, kEstimate).contains("aliases"));
 }
 
+TEST(Report, WarnsOfGrayBesideColor) {
+  InputDescription gray = described("est.ply", kEstimate);
+  gray.file.gray_colors = true;
+  const auto ids = [&](const InputDescription& reference, const InputDescription& estimate) {
+    const Json report = make_report(reference, estimate, evaluate(kReference, kEstimate, options_for({"chamfer"})), test::a_run());
+    std::string all;
+    for (const Json& warning : report.at("warnings")) all += warning.at("id").get<std::string>() + " ";
+    return all;
+  };
+  const InputDescription colored = described("ref.ply", kReference);
+  EXPECT_NE(ids(colored, gray).find("gray_colors"), std::string::npos);
+  EXPECT_NE(ids(gray, colored).find("gray_colors"), std::string::npos);
+  EXPECT_EQ(ids(gray, gray).find("gray_colors"), std::string::npos);
+  EXPECT_EQ(ids(colored, colored).find("gray_colors"), std::string::npos);
+}
+
 TEST(Report, WarnsOfWhatReadersDecided) {
   InputDescription reference = described("ref.ply", kReference);
   reference.file.points = 5;

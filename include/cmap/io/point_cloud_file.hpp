@@ -48,7 +48,7 @@ struct PointCloudFile {
   FileInfo info;
 };
 
-/// Reads a point cloud of any format of FORMATS (PLY, PCD, LAS, NPY, NPZ, text), recognized by content first, extension
+/// Reads a point cloud of any format of the table in lib/io/file_format.cpp, recognized by content first, extension
 /// second. Points that are not finite are dropped and counted, and so are those that no sensor measured (a coordinate
 /// of 1e9 or more; many points exactly at 0 0 0). What the color numbers mean is decided over the whole file and said
 /// in `info`: 8- and 16-bit colors stay integers, others become floats in [0,1], a point without one (NaN) keeps NaN;
