@@ -30,7 +30,8 @@ bool is_known_schema(const Json& schema) { return schema.is_string() && place_of
 
 void complete_earlier_report(Json& report) {
   if (report.at("schema") == kSchemas.front()) name_singletons(report);
-  for (const auto& [name, value] : to_json(EvaluationOptions{}).items()) {
+  const Json defaults = to_json(EvaluationOptions{});
+  for (const auto& [name, value] : defaults.items()) {
     if (!report["parameters"].contains(name)) report["parameters"][name] = value;
   }
 }
