@@ -11,3 +11,102 @@ constexpr std::pair<const char*, fuzz::Reader> kReaders[] = {
     {"npz", read_npz_cloud},          {"obj", read_obj_points},
     {"opensfm", read_opensfm},        {"pcd", read_pcd},
     {"ply", read_ply},                {"ptx", read_ptx},
+    {"text", read_text}};
+
+/// Every input that the fuzzers start from or once found, through every reader, with every compiler.
+std::size_t replay(const std::filesystem::path& folder) {
+  std::size_t n = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (!entry.is_regular_file() || entry.path().filename() == ".gitkeep") continue;
+    const std::string bytes = read_bytes(entry.path());
+    SCOPED_TRACE(entry.path());
+    for (const auto& [name, reader] : kReaders) fuzz::try_reader(reader, std::as_bytes(std::span(bytes)));
+    fuzz::try_session(std::as_bytes(std::span(bytes)));
+    fuzz::try_capture(std::as_bytes(std::span(bytes)));
+    fuzz::try_transform(std::as_bytes(std::span(bytes)));
+    fuzz::try_trajectory(std::as_bytes(std::span(bytes)));
+    ++n;
+  }
+  return n;
+}
+
+std::filesystem::path fuzz_folder() {
+  const char* source = std::getenv("CMAP_SOURCE_DIR");
+  return std::filesystem::path(source == nullptr ? "." : source) / "tests" / "fuzz";
+}
+
+TEST(FuzzRegressions, CorpusAndRegressionsAreReadOrRefused) {
+  EXPECT_GE(replay(fuzz_folder() / "corpus"), 20U);
+  replay(fuzz_folder() / "regressions");
+}
+
+TEST(FuzzRegressions, EverySeedIsReadByItsOwnReader) {
+  for (const auto& [name, reader] : kReaders) {
+    for (const auto& entry : std::filesystem::directory_iterator(fuzz_folder() / "corpus" / name)) {
+      ByteSource source(entry.path());
+      FileInfo info;
+      EXPECT_GT(reader(source, info).size(), 0U) << entry.path();
+    }
+  }
+}
+
+TEST(FuzzRegressions, EverySessionAndCaptureSeedIsRead) {
+  const auto bytes_of = [](std::string_view name) { return read_bytes(fuzz_folder() / "corpus" / name); };
+  for (const std::string_view name : {"npz/predictions", "npz/predictions_deflated"}) {
+    const std::string bytes = bytes_of(name);
+    SessionPredictions session;
+    std::size_t frames = 0;
+    const ArrayStore store("seed", std::as_bytes(std::span(bytes)));
+    read_depth(store, session, frames);
+    read_images(store, session, frames);
+    read_cameras(store, session, frames);
+    EXPECT_EQ(frames, 2U);
+  }
+  EXPECT_EQ(parse_capture_json(bytes_of("capture/pinhole"), "seed").calibration.camera.distortion.size(), 5U);
+  EXPECT_EQ(parse_capture_json(bytes_of("capture/fisheye"), "seed").calibration.camera.distortion.size(), 4U);
+}
+
+TEST(FuzzRegressions, EveryTransformAndTrajectorySeedIsRead) {
+  for (const auto& entry : std::filesystem::directory_iterator(fuzz_folder() / "corpus" / "transform")) {
+    ByteSource source(entry.path());
+    EXPECT_NE(parse_transform(source).T, Eigen::Matrix4d::Identity()) << entry.path();
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(fuzz_folder() / "corpus" / "trajectory")) {
+    ByteSource source(entry.path());
+    EXPECT_EQ(parse_trajectory(source).poses.size(), 2U) << entry.path();
+  }
+}
+
+/// Every seed cut at every length, and with every byte changed: what a fuzzer does first.
+TEST(FuzzRegressions, CutAndChangedSeedsAreReadOrRefused) {
+  for (const auto& [name, reader] : kReaders) {
+    for (const auto& entry : std::filesystem::directory_iterator(fuzz_folder() / "corpus" / name)) {
+      const std::string seed = read_bytes(entry.path());
+      for (std::size_t i = 0; i < seed.size(); ++i) {
+        std::string changed = seed;
+        changed[i] = static_cast<char>(~changed[i]);
+        fuzz::try_reader(reader, std::as_bytes(std::span(changed)));
+        fuzz::try_reader(reader, std::as_bytes(std::span(seed)).first(i + 1));
+      }
+    }
+  }
+}
+
+TEST(FuzzRegressions, CutAndChangedSessionsCapturesAndPosesAreReadOrRefused) {
+  for (const auto& [name, attempt] :
+       {std::pair{"npz", &fuzz::try_session}, std::pair{"capture", &fuzz::try_capture},
+        std::pair{"transform", &fuzz::try_transform}, std::pair{"trajectory", &fuzz::try_trajectory}}) {
+    for (const auto& entry : std::filesystem::directory_iterator(fuzz_folder() / "corpus" / name)) {
+      const std::string seed = read_bytes(entry.path());
+      for (std::size_t i = 0; i < seed.size(); ++i) {
+        std::string changed = seed;
+        changed[i] = static_cast<char>(~changed[i]);
+        attempt(std::as_bytes(std::span(changed)));
+        attempt(std::as_bytes(std::span(seed)).first(i + 1));
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cmap::testing
