@@ -72,7 +72,8 @@ class BadMaps(CmapEval):
             self.refused_map(name, "", "the file is empty")
 
     def test_unknown_format(self):
-        self.refused_map("random.bin", bytes(range(256)), "is of no known format; PLY, PCD, LAS")
+        self.refused_map("random.dat", bytes(range(256)), "is of no known format; PLY, PCD, LAS")
+        self.refused_map("random.bin", bytes(range(256)), "neither KITTI .bin")
         self.refused_map("image.png", b"\x89PNG\r\n\x1a\n" + bytes(64), "PLY, PCD, LAS")
         self.refused_map("letter.txt", "Dear all,\nhere is the map.\n", "line 2", "'here' is not a number")
 
@@ -128,8 +129,8 @@ class BadMaps(CmapEval):
         self.refused_map("half.ply", ply([(0, 0, 0.5)], kind="int"), "line 8", "'0.5' is not of type int")
         self.refused_map(
             "red.ply",
-            ply([(0, 0, 0, 1, 2, 3)], ["x", "y", "z", "red", "green", "blue"], "int"),
-            "color 'red' has type int32",
+            ply([(0, 0, 0, 1, -2, 3)], ["x", "y", "z", "red", "green", "blue"], "int"),
+            "point 1: green = -2, but colors are not negative",
         )
         self.refused_map("list.ply", ply([]).replace("float z", "list uchar float z"), "'z' is not a single number")
         self.refused_map("type.pcd", pcd(POINTS).replace(b"TYPE F F F", b"TYPE F F Q"), "'z' has unknown TYPE Q")
@@ -151,7 +152,7 @@ class BadMaps(CmapEval):
         self.refused_map("none.xyz", "# only a comment\n", "holds no line of numbers")
 
     def test_absurd_coordinates(self):
-        self.refused_map("far.ply", ply([(0, 0, 1e30)]), "point 1: z = 1e+30 is beyond")
+        self.refused_map("far.ply", ply([(0, 0, 1e30)]), "1 left out: no return")
 
     def test_bad_transform(self):
         for content, says in (
