@@ -47,7 +47,8 @@ void warn_about_sizes(const CloudBody& reference, const CloudBody& estimate, std
 void warn_about_frames(const CloudBody& reference, const CloudBody& estimate, std::vector<Warning>& warnings) {
   warn_about_sizes(reference, estimate, warnings);
   const double gap_m = gap_between(reference.box, estimate.box);
-  if (gap_m > 0.0) {
+  constexpr double kApart = 0.01;  // of the smaller map: two floors 2 cm apart are in one frame
+  if (gap_m > kApart * std::min(reference.core_diagonal_m(), estimate.core_diagonal_m())) {
     warnings.push_back({"units_or_frame_mismatch",
                         fmt::format("the maps' boxes are {:.4g} m apart: are both in the reference frame?", gap_m)});
   }

@@ -119,7 +119,9 @@ SampledSpacing sampled_spacing(const Bvh& index) {
 void warn_about_points(std::string_view which, const PointBlocks& points, const SampledSpacing& spacing,
                        const std::optional<CoordinateStep>& step, const EvaluationOptions& options,
                        std::vector<Warning>& warnings) {
-  const bool coarse = step && !is_raster(*step, spacing);
+  // Steps far below the spacing change no number by more than the spacing does.
+  constexpr double kFine = 0.05;
+  const bool coarse = step && !is_raster(*step, spacing) && !(step->step_m < kFine * spacing.spacing_m);
   if (coarse) warnings.push_back(step_warning(which, *step, options));
   // Rounded coordinates meet in the same places: said already.
   if (points.size < kFewest || spacing.repeated_share < kManyRepeated || (coarse && 2.0 * step->step_m > spacing.spacing_m)) return;
@@ -147,7 +149,9 @@ void warn_about_spacing(const SampledSpacing& reference, const NearestField& nea
     const bool below = options.thresholds_m[t] < reference.spacing_m;
     if (below && estimate_to_reference.share_within(t) < 0.5) missed_m.push_back(options.thresholds_m[t]);
   }
-  if (missed_m.empty()) return;
+  // The smallest of many thresholds is below nearly every spacing.
+  const std::size_t n_to_say = options.thresholds_m.size() > 2 ? 2 : 1;
+  if (missed_m.size() < n_to_say) return;
   warnings.push_back(
       {"sparse_reference",
        fmt::format("the reference's points have a spacing of {:.3g} m, above the threshold{} {} m, which even an estimate "

@@ -9,7 +9,7 @@ namespace cmap {
 namespace {
 
 constexpr std::size_t kFewestPoints = 20;  // of fewer, one is no exception
-constexpr std::size_t kMostStrays = 3;
+constexpr std::size_t kMostStrays = 64;
 
 /// The farthest points of one direction, farthest first, and what is left without them.
 struct Strays {

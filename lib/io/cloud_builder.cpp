@@ -192,7 +192,10 @@ void CloudBuilder::describe(FileInfo& info) {
   if (seen_ == 0) source_.fail("holds no points");
   std::string reasons;
   for (const LeftOut& points : info.left_out) reasons += fmt::format("; {} left out: {}", points.n, points.reason);
-  if (kept_ == 0) source_.fail("none of its {} points is finite{}", seen_, reasons);
+  if (kept_ == 0) {
+    const bool any_left_out = !info.left_out.empty();
+    source_.fail("none of its {} points is {}{}", seen_, any_left_out ? "left" : "finite", reasons);
+  }
   const std::uint64_t not_finite = seen_ - kept_ - info.n_left_out();
   if (not_finite > 0) info.notes.push_back(fmt::format("{} of {} points dropped: not finite", not_finite, seen_));
   for (const LeftOut& points : info.left_out) {

@@ -101,7 +101,8 @@ TEST(Options, DefaultsAreThoseOfTheDefinitions) {
     "awd-voxel": 3.0, "awd-min-points": 100, "scs-radius": 5, "mme-radius": 0.1, "mme-min-neighbors": 10, "color-max-distance": null, "voxel": null,
     "crop": null, "as": [], "bootstrap": 0, "block": 10.0, "observed": "none", "observed-range": 100.0, "observed-voxel": 0.5,
     "align": "none", "align-voxel": null, "align-distance": null, "align-scale": false, "trajectory-fit": "sim3",
-    "tanksandtemples-tau": null, "sensitivity": false, "sensitivity-translation": 0.01, "sensitivity-rotation": 0.1, "index": "bvh"})");
+    "tanksandtemples-tau": null, "sensitivity": false, "sensitivity-translation": 0.01, "sensitivity-rotation": 0.1, "index": "bvh",
+    "keep-noise": false, "classes": []})");
   for (const auto& [name, value] : expected.items()) EXPECT_EQ(defaults.at(name), value) << name;
   EXPECT_EQ(defaults.size(), expected.size() + 1) << "the metrics are the one more";
 }

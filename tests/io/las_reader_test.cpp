@@ -84,7 +84,7 @@ TEST(LasReader, BadHeaders) {
       {las.file().set(107, 4294967295U).str(), "truncated: 4294967295 points"},
       {las.file().set(107, 0U).str().substr(0, 227), "holds no points"},
       {Las{.minor = 4}.file().set(247, ~std::uint64_t{0}).str(), "truncated: 18446744073709551615 points"},
-      {las.file().set(155, 1e300).str(), "none of its 1 points is finite; 1 left out: no return"},
+      {las.file().set(155, 1e300).str(), "none of its 1 points is left; 1 left out: no return"},
       {las.file().set(131, 1e308).set(155, 1e308).str(), "none of its 1 points is finite"},
   };
   for (const auto& [content, message] : kCases) EXPECT_THAT(refusal("bad.las", content), HasSubstr(message));
