@@ -18,6 +18,7 @@ from collections import namedtuple
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 SKIPPED = 77
+WRITING_TIME_S = 600  # of a family; seconds on a machine at rest
 # A family of writers: its heading, what it needs of Python's packages (module: distribution), programs and their Debian package.
 Family = namedtuple("Family", "title modules programs package", defaults=((), (), ""))
 FAMILIES = {
@@ -59,9 +60,11 @@ def write_family(family, folder):
     """The cases of a family, written in a process of its own: these libraries do not all live in one."""
     place = os.path.join(folder, family)
     shutil.rmtree(place, ignore_errors=True)
-    done = subprocess.run([sys.executable, os.path.join(HERE, "write_%s.py" % family), place], capture_output=True, text=True, timeout=300)
-    if done.returncode != 0:
-        return [], ["%s: %s" % (family, done.stderr.strip()[-500:])]
+    try:
+        subprocess.run([sys.executable, os.path.join(HERE, "write_%s.py" % family), place], check=True, capture_output=True, text=True,
+                       timeout=WRITING_TIME_S)
+    except subprocess.SubprocessError as error:
+        return [], ["%s: %s %s" % (family, error, str(error.stderr or "")[-500:])]
     with open(os.path.join(place, "cases.json")) as stream:
         written = json.load(stream)
     return [{"family": family, **case} for case in written["cases"]], ["%s: %s" % (family, text) for text in written["failures"]]

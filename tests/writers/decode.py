@@ -222,8 +222,11 @@ DECODERS = {"ply": decode_ply, "pcd": decode_pcd, "las": decode_las, "npy": deco
 
 
 def decode(case):
-    """Decoded of a case of family.Files, by the ending of its name or, where the case says so, by its format."""
+    """Decoded of a case of family.Files, by the ending of its name; points that are not finite are left out."""
     path = case["path"]
     if path.endswith(".bin"):
-        return decode_colmap(case) if "points3D" in path else decode_kitti(case)
-    return DECODERS.get(path.rsplit(".", 1)[-1], decode_text)(case)
+        decoded = decode_colmap(case) if "points3D" in path else decode_kitti(case)
+    else:
+        decoded = DECODERS.get(path.rsplit(".", 1)[-1], decode_text)(case)
+    finite = np.isfinite(decoded.xyz).all(axis=1)
+    return decoded._replace(xyz=decoded.xyz[finite], rgb=None if decoded.rgb is None else decoded.rgb[finite])

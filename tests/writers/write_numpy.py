@@ -86,9 +86,10 @@ def npz(cloud, files):
 
 
 def kitti(cloud, files):
-    lost = {"says": COARSE} if cloud.place == "utm" else {}
-    rows = np.column_stack([cloud.xyz, np.linspace(0, 1, len(cloud.xyz))]).astype("<f4")
-    rows.tofile(files.path("tofile KITTI.bin", **lost))
+    """Sensor coordinates: not for UTM."""
+    if cloud.place == "local":
+        rows = np.column_stack([cloud.xyz, np.linspace(0, 1, len(cloud.xyz))]).astype("<f4")
+        rows.tofile(files.path("tofile KITTI.bin"))
 
 
 if __name__ == "__main__":
