@@ -46,7 +46,8 @@ TEST(Report, DescribesItsInputs) {
   const Json input = report_of(reference, kEstimate).at("inputs").at("reference");
   EXPECT_EQ(input,
             parsed(R"({"path": "ref.ply", "sha256": "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa",
-      "format": "PLY ascii", "points": 2, "finite_points": 2, "color": "u8", "origin_m": [500000.0, 4000000.0, 100.0],
+      "format": "PLY ascii", "points": 2, "finite_points": 2, "left_out": {}, "color": "u8", "color_scale": null,
+      "origin_m": [500000.0, 4000000.0, 100.0],
       "bounds_m": {"min": [500000.0, 4000000.0, 100.0], "max": [500002.0, 4000000.0, 100.0]}})"));
 }
 
