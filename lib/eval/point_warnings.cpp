@@ -119,9 +119,7 @@ SampledSpacing sampled_spacing(const Bvh& index) {
 void warn_about_points(std::string_view which, const PointBlocks& points, const SampledSpacing& spacing,
                        const std::optional<CoordinateStep>& step, const EvaluationOptions& options,
                        std::vector<Warning>& warnings) {
-  // Steps far below the spacing change no number by more than the spacing does.
-  constexpr double kFine = 0.05;
-  const bool coarse = step && !is_raster(*step, spacing) && !(step->step_m < kFine * spacing.spacing_m);
+  const bool coarse = step && !is_raster(*step, spacing);
   if (coarse) warnings.push_back(step_warning(which, *step, options));
   // Rounded coordinates meet in the same places: said already.
   if (points.size < kFewest || spacing.repeated_share < kManyRepeated || (coarse && 2.0 * step->step_m > spacing.spacing_m)) return;

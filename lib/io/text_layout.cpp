@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 
 #include "io/foreign_formats.hpp"
@@ -25,6 +26,23 @@ Names names_of(std::string_view line, const RowFormat& format, std::size_t n_col
   return others.size() == n_columns ? others : names;
 }
 
+/// Whether the first column numbers the rows or labels them, as R's write.table() puts it there without a name.
+bool names_rows(const NumberTable& table) {
+  if (table.rows() < 2) return false;
+  const double first = table.at(0, 0);
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const double value = table.at(row, 0);
+    if (!std::isnan(value) && value != first + static_cast<double>(row)) return false;
+  }
+  return true;
+}
+
+Names header_names(const TextStart& start, const NumberTable& table) {
+  Names names = names_of(start.header->text, start.format, table.columns);
+  if (names.size() + 1 == table.columns && names_rows(table)) names.insert(names.begin(), "");
+  return names;
+}
+
 /// The last comment that names as many columns as there are, coordinates among them.
 std::optional<Names> commented_names(const TextStart& start, std::size_t n_columns) {
   for (auto comment = start.comments.rbegin(); comment != start.comments.rend(); ++comment) {
@@ -38,7 +56,7 @@ std::optional<Names> commented_names(const TextStart& start, std::size_t n_colum
 void refuse_other_content(const ByteSource& source, const TextStart& start, const NumberTable& table) {
   constexpr std::size_t kJudged = 64;
   if (start.header) {
-    const Names names = names_of(start.header->text, start.format, table.columns);
+    const Names names = header_names(start, table);
     if (names_splats(names)) source.fail("line {}: {}", start.header->number, splat_hint());
     if (names_poses(names)) source.fail("line {}: {}", start.header->number, pose_hint());
     return;
@@ -99,7 +117,7 @@ TextLayout text_layout(const ByteSource& source, const TextStart& start, FileInf
   TextLayout layout;
   layout.columns = table.columns;
   if (start.header) {
-    const Names names = names_of(start.header->text, start.format, table.columns);
+    const Names names = header_names(start, table);
     if (!find_point_names(names).position) fail_without_position(source, *start.header, names);
     if (names.size() != table.columns) {
       source.fail("line {}: {} columns, but the header line names {}", first_row, table.columns, names.size());

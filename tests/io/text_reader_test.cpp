@@ -69,6 +69,15 @@ TEST(TextReader, HeadersInUse) {
   EXPECT_EQ(unit.cloud.colors, Colors(Array<RgbF>{{0.5F, 1.0F, 0.0F}}));
 }
 
+TEST(TextReader, RowNamesWithoutANameOfTheirOwn) {
+  // R's write.table() names the rows, but not the column of their names.
+  const auto file = read_content("a.txt", "\"x\" \"y\" \"z\"\n\"1\" 7 8 9\n\"2\" 4 5 6\n");
+  ASSERT_EQ(file.cloud.size(), 2U);
+  EXPECT_EQ(point(file, 1), Eigen::Vector3d(4, 5, 6));
+  EXPECT_THAT(refusal("a.txt", "x y z\n1 7 8 9\n5 4 5 6\n"), HasSubstr("4 columns, but the header line names 3"));
+  EXPECT_THAT(refusal("a.txt", "x y z\n1 7 8 9\n"), HasSubstr("4 columns, but the header line names 3"));
+}
+
 TEST(TextReader, ColumnsNotUsedAreSaid) {
   EXPECT_THAT(all_notes(read_content("a.csv", "x,y,z,intensity,time\n1,2,3,4,5\n")), HasSubstr("not used: intensity, time"));
 }
