@@ -426,10 +426,10 @@ class Recon(unittest.TestCase):
     # Times.
 
     def test_times_out_of_order(self):
-        for table, separator in (("lio.tum", " "), ("lidar.csv", ","), ("images.csv", ",")):
+        for table in ("lidar.csv", "images.csv"):
             path = self.capture / table
             good = path.read_text()
-            swapped(path, 5, separator=separator)
+            swapped(path, 5)
             self.refused(INPUT, f"{table}: line 7: ", "is not after")
             path.write_text(good)
         swapped(self.session(1) / "frames.csv", 2, column=1)
