@@ -49,7 +49,8 @@ def independent(case):
         return None, "not what its header says"
     decoded = decode(case)
     rgb = None if case.get("no_color") else decoded.rgb
-    stored = decoded.stored_xyz + (", " + decoded.stored_rgb if decoded.stored_rgb else ", no color")
+    words = [decoded.stored_xyz, decoded.stored_rgb or "no color"]
+    stored = ", ".join(dict.fromkeys(words))
     return score(*truth(case["place"]), decoded.xyz, rgb), stored
 
 

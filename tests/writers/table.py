@@ -32,9 +32,9 @@ COLORS = """
 WRITERS = """
 ## Writers
 
-"Stored" is what the file holds, as its header or its numbers say; a dash for Chamfer: the file cannot be decoded as its header says. Where
-a writer rounded so much that points fall together, CD depends on which of several equally near points is taken: both ends are given.
-The last column is what `cmap_eval` says of what was lost.
+"Stored" is what the file holds, as its header or its numbers say; a dash for Chamfer: no such file, or one that cannot be decoded as
+its header says. Where a writer rounded so much that points fall together, CD depends on which of several equally near points is taken:
+both ends are given. The last column is what `cmap_eval` says of what was lost.
 """
 
 
@@ -102,12 +102,12 @@ def writer_lines(family, verdicts):
     for verdict in verdicts:
         by_name.setdefault(verdict.case["name"], {})[verdict.case["place"]] = verdict
     for name, places in by_name.items():
-        local, utm = places.get("local"), places.get("utm")
-        if local is None or utm is None:
-            continue
-        chamfer = [number(v.found.chamfer_m if v.found else None) for v in (local, utm)]
-        lines.append("| %s | %s | %s | %s | %s | %s | %s |\n" % (
-            name, utm.stored, *chamfer, color_cell(local.found), color_cell(utm.found), said_cell(utm)))
+        both = [places.get("local"), places.get("utm")]
+        last = both[1] or both[0]
+        found = [verdict.found if verdict else None for verdict in both]
+        chamfer = [number(scores.chamfer_m if scores else None) for scores in found]
+        lines.append("| %s | %s | %s | %s | %s |\n" % (
+            name, last.stored, " | ".join(chamfer), " | ".join(color_cell(scores) for scores in found), said_cell(last)))
     return lines
 
 
