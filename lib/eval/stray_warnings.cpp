@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::size_t kFewestPoints = 20;  // of fewer, one is no exception
 constexpr std::size_t kMostStrays = 64;
+constexpr double kRounding_m = 1e-4;  // distances up to here are how maps were stored, and no point strays by them
 
 /// The farthest points of one direction, farthest first, and what is left without them.
 struct Strays {
@@ -59,7 +60,8 @@ Sums sums_without(std::span<const double> sq_dist, const std::vector<std::size_t
 Strays deciding_strays(std::span<const double> sq_dist, const DistanceStats& stats) {
   const std::size_t most = most_strays(sq_dist.size());
   const auto n = static_cast<double>(stats.n), n_most = static_cast<double>(most);
-  if (most == 0 || !decides(n_most * stats.max_m * stats.max_m / (n * stats.mean_sq_m2),
+  if (most == 0 || stats.max_m < kRounding_m ||
+      !decides(n_most * stats.max_m * stats.max_m / (n * stats.mean_sq_m2),
                             n_most * stats.max_m / (n * stats.mean_m))) {
     return {};
   }
