@@ -11,7 +11,15 @@ HEAD = """# What files of other programs are worth
 
 One cloud of 2,000 points of a room (20 x 15 x 3 m) with random colors, once near 0 and once at UTM coordinates (465 km, 4650 km),
 written by the libraries and programs below and compared with itself. Every number is of a decoder that shares no code with cmap
-(tests/writers); `cmap_eval` gives the same to 2e-5, or says what the writer has lost. Written by `tests/writers/cross_table_test.py --table`.
+(tests/writers); `cmap_eval` gives the same to 2e-5, or says what the writer has lost. This page is written by
+
+```sh
+tests/writers/make_environment.sh build/writers          # 2.5 GB, minutes; names the Debian packages that are missing
+build/writers/bin/python tests/writers/cross_table_test.py build/release/tools/cmap_eval build/writers_files --table docs/WRITERS.md
+```
+
+The test `writers/cross_table` does the same with the Python it finds (Debian's has numpy alone), or with that of
+`cmake -DCMAP_WRITERS_PYTHON=$PWD/build/writers/bin/python`.
 """
 
 BEST = """
