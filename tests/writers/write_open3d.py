@@ -61,7 +61,7 @@ def tensor_pcd(cloud, files):
 
 
 def tensor_text(cloud, files):
-    """Of float coordinates: of double ones these writers fail, or take the bytes for floats (findings/)."""
+    """Of float coordinates: of double ones these writers fail, or write other numbers."""
     save = open3d.t.io.write_point_cloud
     save(files.path("tensor.npz", key="positions", color_key="colors"), tensor(cloud, np.float64, cloud.rgb8))
     points = tensor(cloud, np.float32, cloud.rgb.astype(np.float32))
