@@ -6,6 +6,7 @@
 
 #include "io/cloud_builder.hpp"
 #include "io/format_readers.hpp"
+#include "io/little_endian.hpp"
 
 namespace cmap {
 namespace {
@@ -19,14 +20,6 @@ constexpr std::size_t kErrorOffset = 35;
 constexpr std::size_t kTrackOffset = 43;
 constexpr std::size_t kPointBytes = 51;
 constexpr std::size_t kStagedPoints = 1024;
-
-template <class T>
-T load(std::span<const std::byte> bytes, std::size_t offset) {
-  std::array<std::byte, sizeof(T)> raw;
-  std::memcpy(raw.data(), bytes.data() + offset, sizeof(T));
-  if constexpr (std::endian::native == std::endian::big) std::reverse(raw.begin(), raw.end());
-  return std::bit_cast<T>(raw);
-}
 
 /// Neither a denormal number nor one that no coordinate reaches: what other bytes mostly give.
 bool is_plausible(double value) { return value == 0.0 || (std::isnormal(value) && std::abs(value) <= 1e9); }
@@ -48,17 +41,17 @@ bool is_colmap_binary(const FileStart& start) {
   if (start.name == "points3d.bin") return true;
   if (start.text || start.bytes.size() < 8 + kPointBytes) return false;
   const auto bytes = std::as_bytes(std::span(start.bytes));
-  const auto n = load<std::uint64_t>(bytes, 0);
+  const auto n = load_little<std::uint64_t>(bytes, 0);
   if (n == 0 || n > (start.size - 8) / kPointBytes) return false;
   // The points that lie in the start, one after the other; random bytes do not reach the second.
   std::size_t place = 8;
   for (std::uint64_t i = 0; i < n && place + kPointBytes <= bytes.size(); ++i) {
     const auto point = bytes.subspan(place);
     for (std::size_t k = 0; k < 3; ++k) {
-      if (!is_plausible(load<double>(point, kXyzOffset + 8 * k))) return false;
+      if (!is_plausible(load_little<double>(point, kXyzOffset + 8 * k))) return false;
     }
-    const auto track = load<std::uint64_t>(point, kTrackOffset);
-    if (!is_plausible(load<double>(point, kErrorOffset))) return false;
+    const auto track = load_little<std::uint64_t>(point, kTrackOffset);
+    if (!is_plausible(load_little<double>(point, kErrorOffset))) return false;
     if (track > (start.size - place - kPointBytes) / kTrackPairBytes) return false;
     place += kPointBytes + track * kTrackPairBytes;
   }
@@ -69,7 +62,7 @@ PointCloud read_colmap_binary(ByteSource& source, FileInfo& info) {
   info.format = "COLMAP points3D binary";
   std::array<std::byte, 8> count{};
   source.read(count, "the number of points");
-  const auto n = load<std::uint64_t>(count, 0);
+  const auto n = load_little<std::uint64_t>(count, 0);
   if (n > source.remaining() / kPointBytes) {
     source.fail("truncated: {} points of at least {} bytes do not fit into {} bytes", n, kPointBytes, source.size());
   }
@@ -79,7 +72,7 @@ PointCloud read_colmap_binary(ByteSource& source, FileInfo& info) {
     const std::size_t place = points.size();
     points.resize(place + kPointBytes);
     source.read(std::span(points).subspan(place), "a point");
-    const auto track = load<std::uint64_t>(std::span(points).subspan(place), kTrackOffset);
+    const auto track = load_little<std::uint64_t>(std::span(points).subspan(place), kTrackOffset);
     if (track > source.remaining() / kTrackPairBytes) {
       source.fail("truncated: point {} of {} has a track of {} entries, but {} bytes follow", i + 1, n, track,
                   source.remaining());

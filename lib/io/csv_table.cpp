@@ -5,15 +5,6 @@
 #include "io/number_text.hpp"
 
 namespace cmap {
-namespace {
-
-std::string_view without_blanks(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-}  // namespace
 
 CsvTable::CsvTable(ByteSource& source, std::initializer_list<std::string_view> columns)
     : lines_(source), columns_(columns) {

@@ -3,10 +3,9 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <array>
-#include <cstring>
 
 #include "io/format_readers.hpp"
+#include "io/little_endian.hpp"
 
 namespace cmap {
 namespace {
@@ -110,15 +109,6 @@ constexpr std::pair<std::string_view, std::string_view> kExtensions[] = {
 
 using Answer = std::optional<std::string>;
 
-template <class T>
-T load(std::string_view bytes, std::size_t place) {
-  std::array<unsigned char, sizeof(T)> raw;
-  std::memcpy(raw.data(), bytes.data() + place, sizeof(T));
-  T value = 0;
-  for (std::size_t i = sizeof(T); i-- > 0;) value = static_cast<T>(value << 8 | raw[i]);
-  return value;
-}
-
 bool contains(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
 
 /// The first bytes of what a gzip file holds; fewer where it is damaged.
@@ -148,7 +138,8 @@ Answer gzip(const FileStart& start) {
 Answer zip(const FileStart& start) {
   constexpr std::size_t kHeaderBytes = 30;
   if (!start.bytes.starts_with("PK\x03\x04") || start.bytes.size() < kHeaderBytes) return std::nullopt;
-  const std::string_view member = start.bytes.substr(kHeaderBytes, load<std::uint16_t>(start.bytes, 26));
+  const auto n_name = load_little<std::uint16_t>(std::as_bytes(std::span(start.bytes)), 26);
+  const std::string_view member = start.bytes.substr(kHeaderBytes, n_name);
   if (start.extension == ".sog" || member.ends_with(".webp") || member == "meta.json") return std::string(kSplats);
   if (member.ends_with("data.pkl")) return "is a PyTorch file; write its array with numpy.save";
   if (member == "[Content_Types].xml") return "is an Office document; save its table as CSV";
@@ -195,7 +186,7 @@ Answer mesh(const FileStart& start) {
     return std::nullopt;
   }
   if (start.bytes.size() < kStlHeader) return std::nullopt;
-  const auto n = load<std::uint32_t>(start.bytes, 80);
+  const auto n = load_little<std::uint32_t>(std::as_bytes(std::span(start.bytes)), 80);
   if (n == 0 || start.size != kStlHeader + std::uint64_t{n} * kStlTriangle) return std::nullopt;
   return "is a mesh (STL)" + std::string(kMesh);
 }

@@ -6,6 +6,13 @@ namespace cmap {
 
 inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f' || c == '\r'; }
 
+/// The text without the blanks around it.
+inline std::string_view without_blanks(std::string_view text) {
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
 /// Cuts the next token, ended by blanks, off the front of `text`; empty when none is left.
 inline std::string_view next_token(std::string_view& text) {
   std::size_t begin = 0;

@@ -8,12 +8,6 @@
 namespace cmap {
 namespace {
 
-std::string_view without_blanks(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
 /// How many characters make a line a comment: "#", "##", "//", MATLAB's "%"; 0: it is none.
 std::size_t comment_sign(std::string_view line) {
   if (line.starts_with("//")) return 2;

@@ -8,15 +8,9 @@
 namespace cmap {
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
 std::string_view without_quotes(std::string_view text) {
   const auto quoted = [&](char quote) { return text.size() >= 2 && text.front() == quote && text.back() == quote; };
-  return quoted('"') || quoted('\'') ? trimmed(text.substr(1, text.size() - 2)) : text;
+  return quoted('"') || quoted('\'') ? without_blanks(text.substr(1, text.size() - 2)) : text;
 }
 
 /// "-1,5" or "3": a number whose only mark is at most one comma between digits.
@@ -41,19 +35,19 @@ bool is_separator(char c) { return c == ',' || c == ';'; }
 }  // namespace
 
 bool next_column(std::string_view& line, std::string_view& column) {
-  line = trimmed(line);
+  line = without_blanks(line);
   if (line.empty()) return false;
   std::size_t end = 0;
   while (end < line.size() && !is_blank(line[end]) && !is_separator(line[end])) ++end;
   column = line.substr(0, end);
-  line = trimmed(line.substr(end));
+  line = without_blanks(line.substr(end));
   if (!line.empty() && is_separator(line.front())) line.remove_prefix(1);
   return true;
 }
 
 void split_row(std::string_view line, char separator, std::vector<std::string_view>& columns) {
   columns.clear();
-  line = trimmed(line);
+  line = without_blanks(line);
   if (separator == ' ') {
     for (std::string_view token = next_token(line); !token.empty(); token = next_token(line)) {
       columns.push_back(without_quotes(token));
@@ -62,14 +56,14 @@ void split_row(std::string_view line, char separator, std::vector<std::string_vi
   }
   while (!line.empty()) {
     const std::size_t end = std::min(line.find(separator), line.size());
-    columns.push_back(without_quotes(trimmed(line.substr(0, end))));
+    columns.push_back(without_quotes(without_blanks(line.substr(0, end))));
     line.remove_prefix(std::min(end + 1, line.size()));
   }
 }
 
 RowFormat row_format(const ByteSource& source, std::string_view row, std::uint64_t number) {
-  row = trimmed(row);
-  while (!row.empty() && (row.back() == ',' || row.back() == ';')) row = trimmed(row.substr(0, row.size() - 1));
+  row = without_blanks(row);
+  while (!row.empty() && (row.back() == ',' || row.back() == ';')) row = without_blanks(row.substr(0, row.size() - 1));
   if (!holds(row, ',')) return {holds(row, ';') ? ';' : ' ', false};
   for (const char separator : {';', '\t'}) {
     if (!holds(row, separator)) continue;
