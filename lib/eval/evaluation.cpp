@@ -98,7 +98,6 @@ Evaluation evaluate(PointCloud reference, PointCloud estimate, const EvaluationO
   CoordinateSteps steps;
   clock.run("prepare", 0.15,
             [&] { steps = prepare_clouds(reference, estimate, options, selection, T_ref_est, warnings); });
-  const double reference_step_m = 0.0, estimate_step_m = 0.0;
   Evaluation result{
       .options = options, .T_ref_est = T_ref_est, .pair = index_and_pair(reference, estimate, options.index, clock)};
 
@@ -126,11 +125,8 @@ Evaluation evaluate(PointCloud reference, PointCloud estimate, const EvaluationO
   });
   clock.run("entropy", 0.9, [&] {
     if (selection.needs_neighborhoods) {
-      const auto shapes = [&](const IndexedMap& map, double file_step_m) {
-        return neighborhood_shapes(map.index, options.mme_radius_m, file_step_m);
-      };
-      findings.neighborhoods = Neighborhoods{shapes(result.pair.reference, reference_step_m),
-                                             shapes(result.pair.estimate, estimate_step_m)};
+      findings.neighborhoods = Neighborhoods{neighborhood_shapes(result.pair.reference.index, options.mme_radius_m),
+                                             neighborhood_shapes(result.pair.estimate.index, options.mme_radius_m)};
     }
     append(result.metrics, entropy_records(findings, warnings));
   });
