@@ -4,6 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "cmap/core/core_box.hpp"
+#include "cmap/core/sampled_indices.hpp"
+
 namespace cmap {
 namespace {
 
@@ -51,6 +54,7 @@ PointCloud select(const PointCloud& cloud, const Array<std::uint8_t>& keep) {
   const auto n_kept = static_cast<std::size_t>(std::count_if(keep.begin(), keep.end(), [](auto k) { return k != 0; }));
   PointCloud kept;
   kept.origin = cloud.origin;
+  kept.file_step_m = cloud.file_step_m;
   kept.positions = select_values(cloud.positions, keep, n_kept);
   std::visit(
       [&]<class T>(const T& colors) {
@@ -74,15 +78,21 @@ PointCloud transformed(const PointCloud& cloud, const Eigen::Matrix4d& T_new_old
   moved.colors = cloud.colors;
   if (cloud.positions.empty()) return moved;
   const Eigen::Matrix3d linear = T_new_old.topLeftCorner<3, 3>();
+  moved.file_step_m = cloud.file_step_m * linear.col(0).norm();
   // The old origin is carried over in double, so that only offsets are rounded to float.
   const Eigen::Vector3d new_place = linear * cloud.origin + T_new_old.topRightCorner<3, 1>();
   Box3d box{Eigen::Vector3d::Constant(INFINITY), Eigen::Vector3d::Constant(-INFINITY)};
+  const auto new_position = [&](const Eigen::Vector3f& p) { return Eigen::Vector3d(linear * p.cast<double>() + new_place); };
   for (const Eigen::Vector3f& p : cloud.positions) {
-    const Eigen::Vector3d x = linear * p.cast<double>() + new_place;
+    const Eigen::Vector3d x = new_position(p);
     box.min = box.min.cwiseMin(x);
     box.max = box.max.cwiseMax(x);
   }
-  moved.origin = choose_origin(box);
+  std::vector<Eigen::Vector3d> sample;
+  for (const std::size_t i : sampled_indices(cloud.size(), kCoreSample)) {
+    sample.push_back(new_position(cloud.positions[i]));
+  }
+  moved.origin = choose_origin(box, sample);
   const Eigen::Vector3d shift = new_place - moved.origin;
   moved.positions.resize(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) {

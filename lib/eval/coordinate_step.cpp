@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "eval/sampled_indices.hpp"
+#include "cmap/core/sampled_indices.hpp"
 
 namespace cmap {
 namespace {

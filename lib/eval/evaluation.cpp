@@ -125,8 +125,10 @@ Evaluation evaluate(PointCloud reference, PointCloud estimate, const EvaluationO
   });
   clock.run("entropy", 0.9, [&] {
     if (selection.needs_neighborhoods) {
-      findings.neighborhoods = Neighborhoods{neighborhood_shapes(result.pair.reference.index, options.mme_radius_m),
-                                             neighborhood_shapes(result.pair.estimate.index, options.mme_radius_m)};
+      const auto shapes = [&](const IndexedMap& map) {
+        return neighborhood_shapes(map.index, options.mme_radius_m, map.file_step_m);
+      };
+      findings.neighborhoods = Neighborhoods{shapes(result.pair.reference), shapes(result.pair.estimate)};
     }
     append(result.metrics, entropy_records(findings, warnings));
   });

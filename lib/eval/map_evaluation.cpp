@@ -46,7 +46,8 @@ MapEvaluation evaluate_map(PointCloud map, const EvaluationOptions& options, con
   });
   clock.run("entropy", 0.6, [&] {
     records.add("mean_map_entropy", [&] {
-      return mean_map_entropy_fields(options, neighborhood_shapes(index, options.mme_radius_m), warnings);
+      const auto shapes = neighborhood_shapes(index, options.mme_radius_m, result.map.file_step_m);
+      return mean_map_entropy_fields(options, shapes, warnings);
     });
   });
   clock.run("density", 0.9,

@@ -5,6 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "cmap/core/core_box.hpp"
+
 namespace cmap {
 namespace {
 
@@ -170,13 +172,7 @@ void CloudBuilder::drop_many_zeros() {
   const bool many =
       n_at_zero_ >= kManyZeros && static_cast<double>(n_at_zero_) >= kManyZerosShare * static_cast<double>(kept_);
   if (!many) {
-    // A few far from all others do not choose the origin: the others would lose their digits to them.
-    constexpr double kStrayDiagonals = 10.0;
-    const Box3d with_zero{box_.min.cwiseMin(Eigen::Vector3d::Zero()), box_.max.cwiseMax(Eigen::Vector3d::Zero())};
-    const double diagonal_m = (box_.max - box_.min).norm();
-    const bool stray = std::isfinite(diagonal_m) && diagonal_m > 0.0 &&
-                       (with_zero.max - with_zero.min).norm() > kStrayDiagonals * diagonal_m;
-    if (!stray) box_ = with_zero;
+    box_ = {box_.min.cwiseMin(Eigen::Vector3d::Zero()), box_.max.cwiseMax(Eigen::Vector3d::Zero())};
     return;
   }
   const Array<std::uint8_t> keep = std::visit([](auto& positions) { return positions.drop_zeros(); }, positions_);
@@ -208,7 +204,8 @@ PointCloud CloudBuilder::finish(FileInfo& info) {
   drop_many_zeros();
   describe(info);
   PointCloud cloud;
-  cloud.origin = choose_origin(box_).array() + 0.0;  // -0 becomes 0
+  const auto sample = std::visit([](const auto& positions) { return positions.sample(kCoreSample); }, positions_);
+  cloud.origin = choose_origin(box_, sample);
   cloud.positions = std::visit([&](auto& positions) { return positions.take(cloud.origin); }, positions_);
   cloud.colors = colors_.finish(source_, info);
   return cloud;

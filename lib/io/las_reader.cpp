@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "io/format_readers.hpp"
 #include "io/las_header.hpp"
@@ -76,6 +77,7 @@ PointCloud read_las(ByteSource& source, FileInfo& info, const ReadOptions& optio
                  [&](const std::byte* data, std::size_t n) { selection.append(data, n, layout, builder); });
   if (header.points > 0) selection.check(source, info);
   PointCloud cloud = builder.finish(info);
+  for (const double step_m : layout.columns.scale) cloud.file_step_m = std::max(cloud.file_step_m, std::abs(step_m));
   refuse_degrees(source, units, cloud, info);
   return cloud;
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "cmap/core/sampled_indices.hpp"
+
 namespace cmap {
 namespace {
 
@@ -32,6 +34,23 @@ Array<std::uint8_t> DoublePositions::drop_zeros() {
   Array<std::uint8_t> keep;
   for (Chunk& chunk : chunks_) chunk.kept = move_nonzero(chunk.positions, chunk.kept, keep);
   return keep;
+}
+
+std::vector<Eigen::Vector3d> FloatPositions::sample(std::size_t n) const {
+  std::vector<Eigen::Vector3d> sample;
+  for (const std::size_t i : sampled_indices(kept_, n)) sample.push_back(positions_[i].cast<double>());
+  return sample;
+}
+
+std::vector<Eigen::Vector3d> DoublePositions::sample(std::size_t n) const {
+  std::vector<Eigen::Vector3d> sample;
+  auto chunk = chunks_.begin();
+  std::size_t before = 0;  // points of the chunks before
+  for (const std::size_t i : sampled_indices(size(), n)) {
+    while (i - before >= chunk->kept) before += (chunk++)->kept;
+    sample.push_back(chunk->positions[i - before]);
+  }
+  return sample;
 }
 
 Array<Eigen::Vector3f> FloatPositions::take(const Eigen::Vector3d& origin) {

@@ -22,6 +22,8 @@ class FloatPositions {
   std::size_t size() const { return kept_; }
   /// Drops the points exactly at 0 0 0; says of each which stays.
   Array<std::uint8_t> drop_zeros();
+  /// At most n of the positions, evenly spread.
+  std::vector<Eigen::Vector3d> sample(std::size_t n) const;
   /// Positions as offsets from the origin.
   Array<Eigen::Vector3f> take(const Eigen::Vector3d& origin);
 
@@ -41,6 +43,7 @@ class DoublePositions {
   void keep(std::size_t n) { chunks_.back().kept += n; }
   std::size_t size() const;
   Array<std::uint8_t> drop_zeros();
+  std::vector<Eigen::Vector3d> sample(std::size_t n) const;
   Array<Eigen::Vector3f> take(const Eigen::Vector3d& origin);
 
  private:

@@ -35,6 +35,7 @@ struct PointCloud {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   Array<Eigen::Vector3f> positions;
   Colors colors;
+  double file_step_m = 0.0;  ///< in which the file held the coordinates (LAS: the coarsest axis); 0: not known
 
   std::size_t size() const { return positions.size(); }
   bool has_color() const { return !std::holds_alternative<std::monostate>(colors); }

@@ -24,17 +24,19 @@ struct IndexedMap {
       : index(sort_points(cloud)),
         colors(cloud.has_color() ? sort_colors(cloud, index.points) : Array<ColorBlock>{}),
         n_without_color(count_without_color(cloud.colors)),
-        largest_step_m(float_step(largest_offset(index))) {}
+        largest_step_m(float_step(largest_offset(index))),
+        file_step_m(cloud.file_step_m) {}
 
   std::size_t size() const { return index.points.size; }
   bool has_color() const { return !colors.empty(); }
-  bool has_color_at(std::size_t slot) const { return !std::isnan(color_at(colors, slot).x()); }
+  bool has_color_at(std::size_t slot) const { return n_without_color == 0 || !std::isnan(color_at(colors, slot).x()); }
   Eigen::Vector3d color(std::size_t slot) const { return color_at(colors, slot).cast<double>(); }
 
   Bvh index;
   Array<ColorBlock> colors;
   std::uint64_t n_without_color;  ///< points whose color is NaN
   double largest_step_m;          ///< float's step at the largest coordinate of any offset
+  double file_step_m;             ///< the cloud's
 };
 
 /// One direction of the comparison: every point of `from` with its nearest point of `to`.
