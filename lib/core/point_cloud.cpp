@@ -82,7 +82,9 @@ PointCloud transformed(const PointCloud& cloud, const Eigen::Matrix4d& T_new_old
   // The old origin is carried over in double, so that only offsets are rounded to float.
   const Eigen::Vector3d new_place = linear * cloud.origin + T_new_old.topRightCorner<3, 1>();
   Box3d box{Eigen::Vector3d::Constant(INFINITY), Eigen::Vector3d::Constant(-INFINITY)};
-  const auto new_position = [&](const Eigen::Vector3f& p) { return Eigen::Vector3d(linear * p.cast<double>() + new_place); };
+  const auto new_position = [&](const Eigen::Vector3f& p) {
+    return Eigen::Vector3d(linear * p.cast<double>() + new_place);
+  };
   for (const Eigen::Vector3f& p : cloud.positions) {
     const Eigen::Vector3d x = new_position(p);
     box.min = box.min.cwiseMin(x);

@@ -55,7 +55,8 @@ double reached_by_share(std::vector<double> values) {
 /// Whether all coordinates are numbers of that many bits: floats are a property of all three axes.
 bool all_of_bits(const std::array<Axis, 3>& axes, int bits) {
   return std::ranges::all_of(axes, [&](const Axis& axis) {
-    return std::ranges::all_of(axis.world, [&](double x) { return x == 0.0 || std::fmod(x, float_step(x, bits)) == 0.0; });
+    return std::ranges::all_of(axis.world,
+                               [&](double x) { return x == 0.0 || std::fmod(x, float_step(x, bits)) == 0.0; });
   });
 }
 

@@ -15,8 +15,8 @@ struct Unit {
   const char* name;
   double per_meter;
 };
-constexpr std::array<Unit, 4> kUnits{{{"millimeters", 1000.0}, {"centimeters", 100.0}, {"feet", 3.28084},
-                                      {"inches", 39.3701}}};
+constexpr std::array<Unit, 4> kUnits{
+    {{"millimeters", 1000.0}, {"centimeters", 100.0}, {"feet", 3.28084}, {"inches", 39.3701}}};
 
 /// What may explain that one map is larger by `factor`.
 std::string guess(const char* larger, double factor) {
@@ -38,8 +38,9 @@ void warn_about_sizes(const CloudBody& reference, const CloudBody& estimate, std
     factor = fmt::format(", a factor of {:.4g}", larger_m / smaller_m);
     why = guess(reference_m > estimate_m ? "reference" : "estimate", larger_m / smaller_m);
   }
-  warnings.push_back({"units_or_frame_mismatch", fmt::format("the reference spans {:.6g} m and the estimate {:.6g} m{}: {}",
-                                                             reference_m, estimate_m, factor, why)});
+  warnings.push_back(
+      {"units_or_frame_mismatch", fmt::format("the reference spans {:.6g} m and the estimate {:.6g} m{}: {}",
+                                              reference_m, estimate_m, factor, why)});
 }
 
 }  // namespace

@@ -147,8 +147,8 @@ void add_voxels(MetricSums& sums, const Findings& f, const PartOf& part_of) {
   const EvaluationOptions& o = f.options;
   if (f.selection.contains("color_consistency") && f.pair.has_color()) {
     VoxelColumns spread(sums, "color_spread", o.ccs_voxel_m, part_of);
-    for (const auto& [index, trace] : voxel_color_spreads(f.pair.estimate, o.ccs_voxel_m, o.ccs_min_points,
-                                                         o.ccs_singletons)) {
+    for (const auto& [index, trace] :
+         voxel_color_spreads(f.pair.estimate, o.ccs_voxel_m, o.ccs_min_points, o.ccs_singletons)) {
       spread.add(index, trace);
     }
   }

@@ -314,8 +314,8 @@ ReadOptions read_options(const EvaluationOptions& options, bool sha256) {
 }
 
 const std::vector<std::string>& peer_tools() {
-  static const std::vector<std::string> tools{"color-map-evaluation", "cloudanalyzer", "mapeval",        "open3d",
-                                              "mpeg",                 "cloudcompare",  "tanksandtemples"};
+  static const std::vector<std::string> tools{"color-map-evaluation", "cloudanalyzer",  "mapeval", "open3d", "mpeg",
+                                              "cloudcompare",         "tanksandtemples"};
   return tools;
 }
 

@@ -92,8 +92,7 @@ Json color_map_evaluation_record(const Findings& f, std::vector<Warning>& warnin
   }
   constexpr double kVoxel_m = 0.1, kTau = 0.1, kRadius_m = 0.5;  // its defaults
   const double cd = color_distance(f.pair).value(), cf_db = color_fidelity_db(cd);
-  const LocalColorRecall recall =
-      local_color_recall(f.pair, {.tau = kTau, .radius_m = kRadius_m, .radius_steps = 0.0});
+  const LocalColorRecall recall = local_color_recall(f.pair, {.tau = kTau, .radius_m = kRadius_m, .radius_steps = 0.0});
   return {{"definition",
            "Color-Map-Evaluation 0.1.0 at its defaults: tau 0.1, radius 0.5 m, voxels of 0.1 m, singletons zero"},
           {"CD", cd},

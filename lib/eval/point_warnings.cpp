@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "cmap/core/parallel.hpp"
+#include "cmap/core/sampled_indices.hpp"
 #include "cmap/spatial/k_nearest.hpp"
 #include "eval/plausibility.hpp"
-#include "cmap/core/sampled_indices.hpp"
 
 namespace cmap {
 namespace {
@@ -70,8 +70,8 @@ Warning step_warning(std::string_view which, const CoordinateStep& step, const E
     case CoordinateStep::Cause::kFloat32:
       return {"coarse_coordinates",
               fmt::format("{}, as {} has at {:.7g} m, {}: store the map in {}, or take an offset off it first", steps,
-                          step.cause == CoordinateStep::Cause::kFloat16 ? "float16" : "float32", step.coordinate, needed,
-                          step.cause == CoordinateStep::Cause::kFloat16 ? "float32" : "double precision")};
+                          step.cause == CoordinateStep::Cause::kFloat16 ? "float16" : "float32", step.coordinate,
+                          needed, step.cause == CoordinateStep::Cause::kFloat16 ? "float32" : "double precision")};
     case CoordinateStep::Cause::kDigits:
       return {"coarse_coordinates",
               fmt::format("{}, as if rounded to few digits ({:.7g}), {}: store it with more digits", steps,
@@ -80,9 +80,10 @@ Warning step_warning(std::string_view which, const CoordinateStep& step, const E
       break;
   }
   return {"precision_reduced",
-          fmt::format("{} here, as {:.7g} m is far from the map's origin for single precision, {}: compare parts of the map "
-                      "as files of their own, without far strays",
-                      steps, step.coordinate, needed)};
+          fmt::format(
+              "{} here, as {:.7g} m is far from the map's origin for single precision, {}: compare parts of the map "
+              "as files of their own, without far strays",
+              steps, step.coordinate, needed)};
 }
 
 }  // namespace
@@ -110,7 +111,7 @@ SampledSpacing sampled_spacing(const Bvh& index) {
     if (found[1] != kNoNeighbor && index.points.offset(found[1]) == index.points.offset(slots[i])) ++repeated;
   }
   SampledSpacing spacing{std::numeric_limits<double>::quiet_NaN(),
-                       static_cast<double>(repeated) / static_cast<double>(slots.size())};
+                         static_cast<double>(repeated) / static_cast<double>(slots.size())};
   if (distances_m.size() < kFewest) return spacing;
   spacing.spacing_m = upper_median(std::move(distances_m));
   return spacing;
@@ -122,13 +123,16 @@ void warn_about_points(std::string_view which, const PointBlocks& points, const 
   const bool coarse = step && !is_raster(*step, spacing);
   if (coarse) warnings.push_back(step_warning(which, *step, options));
   // Rounded coordinates meet in the same places: said already.
-  if (points.size < kFewest || spacing.repeated_share < kManyRepeated || (coarse && 2.0 * step->step_m > spacing.spacing_m)) return;
+  if (points.size < kFewest || spacing.repeated_share < kManyRepeated ||
+      (coarse && 2.0 * step->step_m > spacing.spacing_m))
+    return;
   const std::uint64_t n = n_repeated(points);
   warnings.push_back(
       {"repeated_points",
-       fmt::format("{} of the {}'s {} points ({:.3g} %) are copies: they stand at the same place as another one, and count "
-                   "in every mean, in color consistency and towards the points that AWD and MME need",
-                   n, which, points.size, 100.0 * static_cast<double>(n) / static_cast<double>(points.size))});
+       fmt::format(
+           "{} of the {}'s {} points ({:.3g} %) are copies: they stand at the same place as another one, and count "
+           "in every mean, in color consistency and towards the points that AWD and MME need",
+           n, which, points.size, 100.0 * static_cast<double>(n) / static_cast<double>(points.size))});
 }
 
 void warn_about_spacing(const SampledSpacing& reference, const NearestField& nearest_in_reference,
@@ -152,9 +156,10 @@ void warn_about_spacing(const SampledSpacing& reference, const NearestField& nea
   if (missed_m.size() < n_to_say) return;
   warnings.push_back(
       {"sparse_reference",
-       fmt::format("the reference's points have a spacing of {:.3g} m, above the threshold{} {} m, which even an estimate "
-                   "that lies on the surface between them mostly misses: take larger ones, or a denser reference",
-                   reference.spacing_m, missed_m.size() == 1 ? "" : "s", fmt::join(missed_m, ", "))});
+       fmt::format(
+           "the reference's points have a spacing of {:.3g} m, above the threshold{} {} m, which even an estimate "
+           "that lies on the surface between them mostly misses: take larger ones, or a denser reference",
+           reference.spacing_m, missed_m.size() == 1 ? "" : "s", fmt::join(missed_m, ", "))});
 }
 
 }  // namespace cmap

@@ -25,8 +25,8 @@ std::vector<Candidate> candidates(const std::vector<ShiftHint>& reference, const
     for (const ShiftHint& r : reference) all.push_back({-sign * r.shift_m, r.where, r.is_approximate});
     for (const ShiftHint& e : estimate) {
       for (const ShiftHint& r : reference) {
-        all.push_back({sign * (e.shift_m - r.shift_m), e.where + " with " + r.where,
-                       e.is_approximate || r.is_approximate});
+        all.push_back(
+            {sign * (e.shift_m - r.shift_m), e.where + " with " + r.where, e.is_approximate || r.is_approximate});
       }
     }
   }
@@ -35,10 +35,10 @@ std::vector<Candidate> candidates(const std::vector<ShiftHint>& reference, const
 
 std::string sentence(const Candidate& shift) {
   const Eigen::Vector3d t = shift.translation_m.array() + 0.0;  // -0 becomes 0
-  return fmt::format("{} names a shift that brings the maps together; it is not applied: give --transform a file that "
-                     "holds the 16 numbers 1 0 0 {} 0 1 0 {} 0 0 1 {} 0 0 0 1{}",
-                     shift.where, t.x(), t.y(), t.z(),
-                     shift.is_approximate ? " (about: --align is needed after it)" : "");
+  return fmt::format(
+      "{} names a shift that brings the maps together; it is not applied: give --transform a file that "
+      "holds the 16 numbers 1 0 0 {} 0 1 0 {} 0 0 1 {} 0 0 0 1{}",
+      shift.where, t.x(), t.y(), t.z(), shift.is_approximate ? " (about: --align is needed after it)" : "");
 }
 
 }  // namespace

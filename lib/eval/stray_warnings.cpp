@@ -62,7 +62,7 @@ Strays deciding_strays(std::span<const double> sq_dist, const DistanceStats& sta
   const auto n = static_cast<double>(stats.n), n_most = static_cast<double>(most);
   if (most == 0 || stats.max_m < kRounding_m ||
       !decides(n_most * stats.max_m * stats.max_m / (n * stats.mean_sq_m2),
-                            n_most * stats.max_m / (n * stats.mean_m))) {
+               n_most * stats.max_m / (n * stats.mean_m))) {
     return {};
   }
   const std::vector<std::size_t> farthest = farthest_slots(sq_dist, most);
@@ -90,16 +90,18 @@ std::string described(const Strays& strays, const NearestPairs& pairs, const cha
       fmt::format("point {} of the {}'s {}, at ({:.10g}, {:.10g}, {:.10g}), lies {:.4g} m from the {}",
                   points.original_index[slot] + 1, from, points.size, x.x(), x.y(), x.z(), pairs.distance_m(slot), to);
   if (strays.slots.size() == 1) return "one stray point decides the distances: " + which + "; without it";
-  return fmt::format("{} stray points decide the distances: the farthest, {}; without them", strays.slots.size(), which);
+  return fmt::format("{} stray points decide the distances: the farthest, {}; without them", strays.slots.size(),
+                     which);
 }
 
 void warn(const NearestPairs& pairs, const DistanceStats& stats, bool gives_rmse, std::vector<Warning>& warnings) {
   const Strays strays = deciding_strays(pairs.nearest.sq_dist, stats);
   if (strays.slots.empty()) return;
   const std::string change =
-      gives_rmse ? fmt::format("RMSE is {:.4g} m, not {:.4g} m", strays.rmse_without_m, std::sqrt(stats.mean_sq_m2))
-                 : fmt::format("the mean distance from reference to estimate, which Chamfer adds, is {:.4g} m, not {:.4g} m",
-                               strays.mean_without_m, stats.mean_m);
+      gives_rmse
+          ? fmt::format("RMSE is {:.4g} m, not {:.4g} m", strays.rmse_without_m, std::sqrt(stats.mean_sq_m2))
+          : fmt::format("the mean distance from reference to estimate, which Chamfer adds, is {:.4g} m, not {:.4g} m",
+                        strays.mean_without_m, stats.mean_m);
   warnings.push_back({"stray_points", described(strays, pairs, gives_rmse ? "estimate" : "reference",
                                                 gives_rmse ? "reference" : "estimate") +
                                           " " + change});

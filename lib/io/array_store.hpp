@@ -40,8 +40,8 @@ class ArrayStore {
 /// Throws InputError unless the array has this shape; a length of 0 stands for any.
 void require_shape(const NpyArray& array, const std::vector<std::uint64_t>& shape);
 
-/// Brings the shape to this number of dimensions: drops a 1 at the end, which VGGT keeps of depths, and a batch dimension
-/// of 1 in front. Throws InputError for a batch of several.
+/// Brings the shape to this number of dimensions: drops a 1 at the end, which VGGT keeps of depths, and a batch
+/// dimension of 1 in front. Throws InputError for a batch of several.
 void drop_ones(NpyArray& array, std::size_t dimensions);
 
 }  // namespace cmap

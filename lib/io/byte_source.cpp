@@ -81,8 +81,7 @@ std::size_t ByteSource::read_at(std::uint64_t offset, std::span<std::byte> out) 
   }
   std::size_t filled = 0;
   while (filled < out.size()) {
-    const ssize_t got =
-        ::pread(file_, out.data() + filled, out.size() - filled, static_cast<off_t>(offset + filled));
+    const ssize_t got = ::pread(file_, out.data() + filled, out.size() - filled, static_cast<off_t>(offset + filled));
     if (got < 0 && errno != EINTR) fail("reading failed at byte {}: {}", offset + filled, std::strerror(errno));
     if (got == 0) break;  // the file became shorter
     if (got > 0) filled += static_cast<std::size_t>(got);

@@ -53,8 +53,8 @@ class CloudBuilder {
   std::uint64_t max_points_;
   std::variant<FloatPositions, DoublePositions> positions_;
   ColorStore colors_;
-  Box3d box_;                     ///< of the points that are not exactly at 0 0 0
-  std::uint64_t n_at_zero_ = 0;   ///< kept
+  Box3d box_;                    ///< of the points that are not exactly at 0 0 0
+  std::uint64_t n_at_zero_ = 0;  ///< kept
   std::uint64_t n_no_return_ = 0;
   std::uint64_t seen_ = 0;
   std::vector<LeftOut> left_out_;

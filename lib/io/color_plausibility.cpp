@@ -11,8 +11,8 @@ namespace {
 
 // Points looked at, evenly spread over the file: enough for shares of a percent, nothing beside reading.
 constexpr std::size_t kSample = 1 << 14;
-constexpr double kLargeShare = 0.2;    // of one color
-constexpr double kSmallShare = 0.01;   // of colors on another scale than the rest
+constexpr double kLargeShare = 0.2;       // of one color
+constexpr double kSmallShare = 0.01;      // of colors on another scale than the rest
 constexpr std::uint64_t kFewPoints = 20;  // in which a color may repeat by chance
 
 std::vector<RgbF> sample_of(const Colors& colors, std::size_t size) {
@@ -49,9 +49,10 @@ void warn_of_one_color(const Colors& colors, std::size_t size, std::vector<RgbF>
   if (static_cast<double>(n_sampled) < kLargeShare * static_cast<double>(sample.size())) return;
   const std::uint64_t n = count_of(colors, size, color);
   if (n < kFewPoints || static_cast<double>(n) < kLargeShare * static_cast<double>(size)) return;
-  const std::string share = n == size ? "all points have one and the same color"
-                                      : fmt::format("{:.3g} % of the points ({} of {}) have exactly the same color",
-                                                    100.0 * static_cast<double>(n) / static_cast<double>(size), n, size);
+  const std::string share = n == size
+                                ? "all points have one and the same color"
+                                : fmt::format("{:.3g} % of the points ({} of {}) have exactly the same color",
+                                              100.0 * static_cast<double>(n) / static_cast<double>(size), n, size);
   const std::string_view name = color == RgbF{0, 0, 0} ? " (black)" : color == RgbF{255, 255, 255} ? " (white)" : "";
   info.warnings.push_back(
       {"one_color", fmt::format("{}, {:.4g} {:.4g} {:.4g} of 255{}: a placeholder for points that were never seen by a "
@@ -89,14 +90,16 @@ void warn_of_dark_colors(const Colors& colors, const StoredColors& stored, const
   const Range range = range_of(colors, stored);
   if (stored.highest <= range.small_share * range.white) {
     info.warnings.push_back(
-        {"dark_colors", fmt::format("the highest color value is {:g} of {:g}: are the colors on another scale (10 or 12 "
-                                    "bits, or cut to 0 and 1)?",
-                                    stored.highest, range.white)});
+        {"dark_colors",
+         fmt::format("the highest color value is {:g} of {:g}: are the colors on another scale (10 or 12 "
+                     "bits, or cut to 0 and 1)?",
+                     stored.highest, range.white)});
   } else if (range.below > 0.0F && nearly_all_below(sample, 255.0F * range.below / range.white)) {
     info.warnings.push_back(
-        {"dark_colors", fmt::format("nearly all color values are at most {:g}, but the highest is {:g}, so that {:g} was "
-                                    "taken for white: are a few points on another scale than the rest?",
-                                    range.below, stored.highest, range.white)});
+        {"dark_colors",
+         fmt::format("nearly all color values are at most {:g}, but the highest is {:g}, so that {:g} was "
+                     "taken for white: are a few points on another scale than the rest?",
+                     range.below, stored.highest, range.white)});
   }
 }
 
@@ -123,20 +126,23 @@ std::string color_scale_note(const Colors& colors, float white, const ColorDecla
   }
   if (white == 1.0F) return declared ? "" : "colors taken as [0,1]: no value above 1";
   if (packed) return "";
-  return fmt::format("colors taken as 0 to {:g}, with fractions: values above {:g}", white, white > 255.0F ? 255.0F : 1.0F);
+  return fmt::format("colors taken as 0 to {:g}, with fractions: values above {:g}", white,
+                     white > 255.0F ? 255.0F : 1.0F);
 }
 
 void warn_of_odd_colors(const Colors& colors, const StoredColors& stored, FileInfo& info) {
   const std::size_t size = std::visit(
       []<class T>(const T& c) -> std::size_t {
-        if constexpr (std::is_same_v<T, std::monostate>) return 0;
-        else return c.size();
+        if constexpr (std::is_same_v<T, std::monostate>)
+          return 0;
+        else
+          return c.size();
       },
       colors);
   std::vector<RgbF> sample = sample_of(colors, size);
   if (sample.empty()) return;
-  info.gray_colors = std::all_of(sample.begin(), sample.end(),
-                                 [](const RgbF& c) { return c[0] == c[1] && c[1] == c[2]; });
+  info.gray_colors =
+      std::all_of(sample.begin(), sample.end(), [](const RgbF& c) { return c[0] == c[1] && c[1] == c[2]; });
   warn_of_dark_colors(colors, stored, sample, info);
   warn_of_one_color(colors, size, sample, info);
 }

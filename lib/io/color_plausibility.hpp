@@ -8,8 +8,8 @@
 
 namespace cmap {
 
-/// What a report calls the scale of colors that were read as declared: "0 to 255", "16 bit", ...; `white` is what floats
-/// were divided by.
+/// What a report calls the scale of colors that were read as declared: "0 to 255", "16 bit", ...; `white` is what
+/// floats were divided by.
 std::string color_scale_text(const Colors& colors, float white, const ColorDeclaration& declaration);
 
 /// What was decided where the declaration leaves it open; empty where it does not.

@@ -158,8 +158,8 @@ void ColorStore::append_floats(const ByteSource& source, const PointColumns& col
   };
   if (range.high > kOvershoot * kWhite16) {
     const auto [at, channel] = place_of(range.high);
-    source.fail("point {}: {} = {:g}; colors lie in 0 to 1, 0 to 255 or 0 to 65535", at + 1, declaration_.names[channel],
-                range.high);
+    source.fail("point {}: {} = {:g}; colors lie in 0 to 1, 0 to 255 or 0 to 65535", at + 1,
+                declaration_.names[channel], range.high);
   }
   if (range.low < lowest_) {
     lowest_ = range.low;
@@ -235,9 +235,10 @@ void ColorStore::check_lowest(const ByteSource& source) const {
   if (lowest_ >= 0.0F) return;
   const std::string& name = declaration_.names[lowest_channel_];
   if (declaration_.type == ScalarType::kInt8) {
-    source.fail("point {}: {} = {:g}, of a signed type; if these are bytes from 0 to 255, they are to be declared as "
-                "uchar",
-                lowest_point_ + 1, name, lowest_);
+    source.fail(
+        "point {}: {} = {:g}, of a signed type; if these are bytes from 0 to 255, they are to be declared as "
+        "uchar",
+        lowest_point_ + 1, name, lowest_);
   }
   const bool whole_type = declaration_.type && !is_floating(*declaration_.type);
   if (!whole_type && lowest_ >= kUndershoot * white_for(highest_)) return;
@@ -258,8 +259,8 @@ Colors ColorStore::finish(const ByteSource& source, FileInfo& info) {
   settle(info);
   if (n_without_color_ > 0) {
     info.warnings.push_back(
-        {"points_without_color", fmt::format("{} of {} points have no color (NaN); they count for geometry alone",
-                                             n_without_color_, size_)});
+        {"points_without_color",
+         fmt::format("{} of {} points have no color (NaN); they count for geometry alone", n_without_color_, size_)});
   }
   warn_of_odd_colors(colors_, {highest_, std::holds_alternative<Array<RgbF>>(colors_) ? white_ : 0.0F}, info);
   return std::move(colors_);
@@ -272,7 +273,8 @@ void ColorStore::settle(FileInfo& info) {
     if (is_float && declaration_.storage == ColorStorage::kSeparate && highest_ <= 1.0F) widen_to_floats();
   } else if (auto* shorts = std::get_if<Array<Rgb16>>(&colors_); shorts != nullptr && (bits_ & 0xff) == 0) {
     Array<Rgb8> narrow(size_);
-    for (std::size_t i = 0; i < 3 * size_; ++i) channels(narrow)[i] = static_cast<std::uint8_t>(channels(*shorts)[i] >> 8);
+    for (std::size_t i = 0; i < 3 * size_; ++i)
+      channels(narrow)[i] = static_cast<std::uint8_t>(channels(*shorts)[i] >> 8);
     info.notes.emplace_back("16-bit colors that are 8-bit ones times 256: divided by 256, so that white is white");
     info.color_scale = "16 bit, 8-bit values times 256";
     highest_ /= 256.0F;

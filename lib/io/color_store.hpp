@@ -15,7 +15,7 @@ namespace cmap {
 /// How a file declares its colors.
 struct ColorDeclaration {
   ColorStorage storage = ColorStorage::kNone;
-  std::optional<ScalarType> type = {};  ///< of the channels; none where a file does not say (text)
+  std::optional<ScalarType> type = {};                       ///< of the channels; none where a file does not say (text)
   std::array<std::string, 3> names{"red", "green", "blue"};  ///< the file's own, for messages
 };
 

@@ -9,7 +9,7 @@ namespace cmap {
 
 /// What the description of a coordinate system says about the unit of the coordinates.
 struct CoordinateUnits {
-  bool angular = false;               ///< x and y are angles: longitude and latitude
+  bool angular = false;                ///< x and y are angles: longitude and latitude
   std::optional<double> horizontal_m;  ///< meters per unit of x and y; unset: not said
   std::optional<double> vertical_m;    ///< the same of z
   std::string system;                  ///< name or code of the coordinate system, for messages; may be empty

@@ -15,8 +15,8 @@ PointCloud read_las(ByteSource& source, FileInfo& info, const ReadOptions& optio
 PointCloud read_text(ByteSource& source, FileInfo& info);
 /// An array of numbers of shape (N, 3) to (N, 9), (..., 3) or transposed, or of records with named members.
 PointCloud read_npy_cloud(ByteSource& source, FileInfo& info);
-/// The arrays of points, colors and mask by their names and shapes: VGGT's predictions, VGGT-SLAM's point maps, clouds of
-/// other tools. The file is held in memory.
+/// The arrays of points, colors and mask by their names and shapes: VGGT's predictions, VGGT-SLAM's point maps, clouds
+/// of other tools. The file is held in memory.
 PointCloud read_npz_cloud(ByteSource& source, FileInfo& info);
 
 /// Leica's PTX: scans as grids, each with its scanner's place and a matrix that moves it into the world.

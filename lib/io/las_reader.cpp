@@ -45,9 +45,10 @@ void check_rest(const ByteSource& source, const LasHeader& header, const LasReco
   const std::uint64_t room = rest / header.record_bytes;
   if (rest == 0) return;
   if (header.points == 0 && room > 0) {
-    source.fail("the header counts 0 points, but {} bytes follow, room for {} points: the file was not finished "
-                "(LAStools' lasinfo -repair counts them again)",
-                rest, room);
+    source.fail(
+        "the header counts 0 points, but {} bytes follow, room for {} points: the file was not finished "
+        "(LAStools' lasinfo -repair counts them again)",
+        rest, room);
   }
   if (header.points > 1 && rest % header.points == 0 && rest % header.record_bytes != 0) {
     source.fail("{} bytes are left behind the points, {} a point: records seem to be longer than the header's {} bytes",

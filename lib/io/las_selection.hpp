@@ -39,7 +39,7 @@ class LasSelection {
   std::size_t record_bytes_;
   std::size_t class_at_;  ///< in a record
   std::uint8_t class_mask_, withheld_mask_;
-  std::vector<std::uint8_t> classes_;            ///< asked for; empty: all
+  std::vector<std::uint8_t> classes_;  ///< asked for; empty: all
   std::array<Verdict, 256> of_class_byte_{};
   std::vector<std::byte> kept_records_;          ///< of the piece at hand
   std::array<std::uint64_t, 256> n_of_class_{};  ///< of the records that needed a look

@@ -74,9 +74,10 @@ void refuse_degrees(const ByteSource& source, const CoordinateUnits& units, cons
     return;
   }
   const Eigen::Vector3d place = cloud.world(0);
-  throw UnsupportedError(fmt::format("{}: its coordinates are degrees of longitude and latitude{}, and distances need "
-                                     "meters; project it first, for example: {}",
-                                     source.name(), system, projecting_command(source.name(), place.x(), place.y())));
+  throw UnsupportedError(
+      fmt::format("{}: its coordinates are degrees of longitude and latitude{}, and distances need "
+                  "meters; project it first, for example: {}",
+                  source.name(), system, projecting_command(source.name(), place.x(), place.y())));
 }
 
 }  // namespace cmap

@@ -21,10 +21,12 @@ std::string_view without_byte_order_mark(std::string_view text) {
 bool starts_as_utf16(std::string_view text) { return text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"); }
 
 LineReader::LineReader(ByteSource& source) : source_(source) {
-  const std::string_view start = as_text(source.peek(std::min<std::uint64_t>(source.block_bytes(), source.remaining())));
+  const std::string_view start =
+      as_text(source.peek(std::min<std::uint64_t>(source.block_bytes(), source.remaining())));
   if (source.position() == 0 && starts_as_utf16(start)) source.fail("is UTF-16 text; save it as UTF-8");
   const std::size_t first_end = start.find_first_of("\r\n");
-  const bool lone_cr = first_end != start.npos && first_end + 1 < start.size() && start[first_end] == '\r' && start[first_end + 1] != '\n';
+  const bool lone_cr = first_end != start.npos && first_end + 1 < start.size() && start[first_end] == '\r' &&
+                       start[first_end + 1] != '\n';
   if (lone_cr) end_ = '\r';
   if (source.position() == 0) source.advance(start.size() - without_byte_order_mark(start).size());
 }

@@ -56,15 +56,17 @@ bool are_poses(const NumberTable& sample) {
 
 void note_shape(const NpyArray& array, const PointTable& table, FileInfo& info) {
   if (table.transposed) {
-    note(array, fmt::format("{} rows of {} numbers taken as {} points (transposed)", table.columns, table.rows, table.rows),
+    note(array,
+         fmt::format("{} rows of {} numbers taken as {} points (transposed)", table.columns, table.rows, table.rows),
          info);
   }
   const NpyField& values = array.header.fields[0];
   if (is_floating(values.scalar)) return;
   note(array,
-       fmt::format("the coordinates are integers ({}), taken as meters as they are; raw integers of LAS would need their "
-                   "scale and offset",
-                   values.type),
+       fmt::format(
+           "the coordinates are integers ({}), taken as meters as they are; raw integers of LAS would need their "
+           "scale and offset",
+           values.type),
        info);
 }
 
@@ -85,7 +87,8 @@ NpyPoints plain_points(const NpyArray& array, FileInfo& info) {
   if (table.columns == 3) return points;
   const NumberTable sample = sample_of(array, table, type);
   if (are_poses(sample)) {
-    array.fail("has the shape {}: positions and unit quaternions, a trajectory and no points", shape_text(array.shape()));
+    array.fail("has the shape {}: positions and unit quaternions, a trajectory and no points",
+               shape_text(array.shape()));
   }
   if (const auto color = find_unnamed_colors(sample, false, info)) {
     set_colors(points, {column((*color)[0]), column((*color)[1]), column((*color)[2])});

@@ -51,7 +51,8 @@ std::vector<Field> fields_of(std::span<const NamedColumn> columns) {
   std::vector<Field> fields;
   for (const NamedColumn& column : columns) {
     const bool number = column.field.kind == NpyKind::kNumber || column.field.kind == NpyKind::kBool;
-    fields.push_back({column.name.empty() ? "_" : column.name, column.field.scalar, number ? column.field.count : 2, {}});
+    fields.push_back(
+        {column.name.empty() ? "_" : column.name, column.field.scalar, number ? column.field.count : 2, {}});
   }
   return fields;
 }
@@ -72,10 +73,11 @@ void check_coordinates(const std::string& name, std::span<const NamedColumn> col
   if (!std::any_of(axes.begin(), axes.end(), is_whole)) return;
   const NamedColumn& first = columns[axes[0]];
   if (first.name == "X" || has_las_members(columns)) {
-    throw InputError(fmt::format("{}: the coordinates {} {} {} are integers ({}) as LAS stores them, which mean nothing "
-                                 "without its scale and offset; save the scaled coordinates (laspy: las.xyz), or give the "
-                                 "LAS file itself",
-                                 name, first.name, columns[axes[1]].name, columns[axes[2]].name, first.field.type));
+    throw InputError(
+        fmt::format("{}: the coordinates {} {} {} are integers ({}) as LAS stores them, which mean nothing "
+                    "without its scale and offset; save the scaled coordinates (laspy: las.xyz), or give the "
+                    "LAS file itself",
+                    name, first.name, columns[axes[1]].name, columns[axes[2]].name, first.field.type));
   }
   info.notes.push_back(fmt::format("the coordinates are integers ({}), taken as meters as they are", first.field.type));
 }

@@ -13,20 +13,21 @@ namespace {
 using Entries = std::vector<NpzEntry>;
 
 constexpr std::string_view kPointNames[] = {
-    "pointcloud", "worldpoints", "points",   "xyz",      "positions", "worldpointsfromdepth", "position", "pos",
-    "coords",     "coordinates", "vertices", "verts",    "points3d",  "pts3d",                "pts",      "point",
-    "pointsxyz",  "cloud",       "pcd",      "pc",       "coord",     "globalpoints",         "location", "locations",
-    "lidar",      "scan",        "data",     "arr0"};
+    "pointcloud", "worldpoints", "points", "xyz",          "positions", "worldpointsfromdepth",
+    "position",   "pos",         "coords", "coordinates",  "vertices",  "verts",
+    "points3d",   "pts3d",       "pts",    "point",        "pointsxyz", "cloud",
+    "pcd",        "pc",          "coord",  "globalpoints", "location",  "locations",
+    "lidar",      "scan",        "data",   "arr0"};
 constexpr std::string_view kColorNames[] = {
-    "colors",       "color",     "colours",     "colour",  "rgb",   "rgbs",  "rgba",     "pointcolors",
-    "pointscolors", "pointsrgb", "pointrgb",    "colorsrgb", "pcdcolors", "cloudcolors", "vertexcolors", "vertexcolor"};
+    "colors",       "color",     "colours",  "colour",    "rgb",       "rgbs",        "rgba",         "pointcolors",
+    "pointscolors", "pointsrgb", "pointrgb", "colorsrgb", "pcdcolors", "cloudcolors", "vertexcolors", "vertexcolor"};
 constexpr std::string_view kPictureNames[] = {"images", "image", "imgs", "img", "inputimgs"};
 constexpr std::string_view kMaskNames[] = {"mask", "valid", "validmask", "masks"};
 // Arrays of three numbers a row that are no points.
-constexpr std::string_view kOtherNames[] = {"normals", "normal",   "faces",    "triangles", "cells",    "tris",
-                                            "mesh",    "rays",     "flow",     "bbox",      "extrinsic", "extrinsics",
-                                            "poses",   "intrinsic", "intrinsics", "camerapositions", "arr1",
-                                            "depth",   "depths",   "depthconf", "conf"};
+constexpr std::string_view kOtherNames[] = {
+    "normals", "normal", "faces",     "triangles",  "cells", "tris",      "mesh",       "rays",
+    "flow",    "bbox",   "extrinsic", "extrinsics", "poses", "intrinsic", "intrinsics", "camerapositions",
+    "arr1",    "depth",  "depths",    "depthconf",  "conf"};
 
 template <std::size_t n>
 bool is_one_of(std::string_view name, const std::string_view (&names)[n]) {
@@ -107,9 +108,10 @@ std::string listed(const Entries& entries) {
   }
   if (entries.empty()) source.fail("an empty ZIP file");
   if (candidates.empty()) {
-    source.fail("a ZIP file without an array of points (points, xyz, positions, pointcloud or world_points of shape "
-                "(N, 3)); it holds {}",
-                listed(entries));
+    source.fail(
+        "a ZIP file without an array of points (points, xyz, positions, pointcloud or world_points of shape "
+        "(N, 3)); it holds {}",
+        listed(entries));
   }
   source.fail("several arrays may be the points; name the right one 'points': it holds {}", listed(entries));
 }
@@ -156,7 +158,8 @@ std::optional<ColorArrays> colors_without_name(const Entries& entries, const std
 bool has_other_count(const NpzEntry& entry, const NpyPoints& points) {
   const auto& shape = entry.header->shape;
   if (shape.empty()) return false;
-  for (const std::uint64_t channels : {shape.back(), shape[shape.size() < 3 ? 0 : shape.size() - 3], std::uint64_t{1}}) {
+  for (const std::uint64_t channels :
+       {shape.back(), shape[shape.size() < 3 ? 0 : shape.size() - 3], std::uint64_t{1}}) {
     if (match_points(shape, channels, points.shape)) return false;
   }
   return true;
@@ -190,8 +193,8 @@ std::optional<ColorArrays> choose_colors(const ByteSource& source, const Entries
     if (match_colors(entry->header->shape, points.shape)) return ColorArrays{{entry->name}, false};
     if (is_packed(*entry, name, points)) return ColorArrays{{entry->name}, true};
     if (!has_other_count(*entry, points)) {
-      info.notes.push_back(fmt::format("no color taken from {}: its shape is {}, not three numbers a point", entry->name,
-                                       shape_text(entry->header->shape)));
+      info.notes.push_back(fmt::format("no color taken from {}: its shape is {}, not three numbers a point",
+                                       entry->name, shape_text(entry->header->shape)));
     } else if (wrong == nullptr && (is_one_of(name, kColorNames) || points.shape.size() > 1)) {
       wrong = entry;
     }
@@ -208,8 +211,8 @@ std::optional<ColorArrays> choose_colors(const ByteSource& source, const Entries
   return colors_without_name(entries, points_name, points, info);
 }
 
-std::optional<std::string> choose_mask(const ByteSource& source, const Entries& entries,
-                                       const std::string& points_name, const NpyPoints& points) {
+std::optional<std::string> choose_mask(const ByteSource& source, const Entries& entries, const std::string& points_name,
+                                       const NpyPoints& points) {
   for (const std::string_view name : kMaskNames) {
     const NpzEntry* entry = find(entries, name);
     if (entry == nullptr || !entry->header || entry->header->is_record()) continue;

@@ -16,7 +16,8 @@ struct PointArrays {
 };
 
 /// The first array with a usual name (pointcloud, world_points, points, xyz, positions, ...) that has the shape of
-/// points; else x, y and z; else the only one that has that shape. Throws InputError where there is none or are several.
+/// points; else x, y and z; else the only one that has that shape. Throws InputError where there is none or are
+/// several.
 PointArrays choose_point_arrays(const ByteSource& source, const std::vector<NpzEntry>& entries);
 
 /// What has a color for each point: one array, or red, green and blue in arrays of their own.
@@ -25,10 +26,10 @@ struct ColorArrays {
   bool packed = false;  ///< 0x..RRGGBB
 };
 
-/// By name (colors, rgb, images, ...), the first that has as many as there are points. Notes those that cannot be colors.
-/// Throws InputError, naming both arrays, where an array of colors has another number of them.
+/// By name (colors, rgb, images, ...), the first that has as many as there are points. Notes those that cannot be
+/// colors. Throws InputError, naming both arrays, where an array of colors has another number of them.
 std::optional<ColorArrays> choose_colors(const ByteSource& source, const std::vector<NpzEntry>& entries,
-                                        const std::string& points_name, const NpyPoints& points, FileInfo& info);
+                                         const std::string& points_name, const NpyPoints& points, FileInfo& info);
 
 /// An array of truth values or whole numbers called mask or valid. Throws InputError where it has not one a point.
 std::optional<std::string> choose_mask(const ByteSource& source, const std::vector<NpzEntry>& entries,

@@ -37,7 +37,7 @@ class NpzCloud {
     const PointArrays chosen = choose_point_arrays(source_, entries_);
     name_ = fmt::format("{}", fmt::join(chosen.names, ", "));
     const std::string plain = plain_name(name_);
-    info_.format = plain == "pointcloud"             ? "NPZ VGGT-SLAM point map"
+    info_.format = plain == "pointcloud"              ? "NPZ VGGT-SLAM point map"
                    : plain.starts_with("worldpoints") ? "NPZ VGGT predictions"
                                                       : "NPZ";
     if (chosen.names.size() > 1) return read_coordinates(chosen.names);

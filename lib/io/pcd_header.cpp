@@ -107,7 +107,8 @@ void keep_viewpoint(const RawHeader& raw, FileInfo& info) {
     info.notes.emplace_back("VIEWPOINT is no pose and was ignored");
   } else if (!std::equal(values.begin(), values.end(), kIdentity)) {
     info.sensor_positions.emplace_back(values[0], values[1], values[2]);
-    info.notes.emplace_back("VIEWPOINT is not the identity: kept as the sensor's position; it does not move the points");
+    info.notes.emplace_back(
+        "VIEWPOINT is not the identity: kept as the sensor's position; it does not move the points");
   }
 }
 

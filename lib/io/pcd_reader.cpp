@@ -32,9 +32,8 @@ void check_bytes_left_over(ByteSource& source, std::uint64_t points, FileInfo& i
   if (n == 0) return;
   bool empty = true;
   for (auto bytes = source.peek(1); !bytes.empty() && empty; bytes = source.peek(1)) {
-    empty = std::all_of(bytes.begin(), bytes.end(), [](std::byte b) {
-      return b == std::byte{0} || b == std::byte{'\n'} || b == std::byte{'\r'};
-    });
+    empty = std::all_of(bytes.begin(), bytes.end(),
+                        [](std::byte b) { return b == std::byte{0} || b == std::byte{'\n'} || b == std::byte{'\r'}; });
     source.advance(bytes.size());
   }
   if (!empty) {

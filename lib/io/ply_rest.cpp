@@ -34,7 +34,8 @@ void say_what_is_not_used(const PlyHeader& header, FileInfo& info) {
                                             "surface: sample points on the surface first",
                                             element.count, element.name, vertex.count)});
     if (has_color(element) && !has_color(vertex)) {
-      info.warnings.push_back({"colors_in_faces", "no color: only the faces of the mesh have colors, its vertices none"});
+      info.warnings.push_back(
+          {"colors_in_faces", "no color: only the faces of the mesh have colors, its vertices none"});
     }
   }
   note_unused(others, "elements", info);
@@ -88,7 +89,8 @@ bool pass_binary(ByteSource& source, const PlyElement& element, bool swap_bytes,
 bool is_line_end(ByteSource& source) {
   if (source.remaining() > 2) return false;
   const auto bytes = source.peek(source.remaining());
-  return std::all_of(bytes.begin(), bytes.end(), [](std::byte b) { return b == std::byte{'\n'} || b == std::byte{'\r'}; });
+  return std::all_of(bytes.begin(), bytes.end(),
+                     [](std::byte b) { return b == std::byte{'\n'} || b == std::byte{'\r'}; });
 }
 
 void check_bytes_left_over(ByteSource& source, const PlyHeader& header, FileInfo& info) {
@@ -99,7 +101,8 @@ void check_bytes_left_over(ByteSource& source, const PlyHeader& header, FileInfo
   const PlyElement& vertex = header.elements[header.vertex];
   if (fixed) {
     const std::string each =
-        n % vertex.count == 0 ? fmt::format(", exactly {} a point: the header leaves out a property", n / vertex.count) : "";
+        n % vertex.count == 0 ? fmt::format(", exactly {} a point: the header leaves out a property", n / vertex.count)
+                              : "";
     source.fail("{} bytes are left over after all that the header says{}; the points would be read shifted", n, each);
   }
   info.notes.push_back(fmt::format("{} bytes are left over after all that the header says; not read", n));

@@ -71,14 +71,15 @@ constexpr std::string_view kPacked[] = {"rgb", "rgba"};
 struct UnitSuffix {
   std::string_view suffix, unit;
 };
-constexpr UnitSuffix kUnits[] = {{"m", ""},          {"meter", ""},    {"meters", ""},  {"metre", ""},    {"metres", ""},
-                                 {"mm", "mm"},       {"cm", "cm"},     {"km", "km"},    {"ft", "feet"},   {"feet", "feet"},
-                                 {"usft", "feet"},   {"in", "inches"}, {"inch", "inches"}};
+constexpr UnitSuffix kUnits[] = {
+    {"m", ""},    {"meter", ""},  {"meters", ""},   {"metre", ""},    {"metres", ""},   {"mm", "mm"},      {"cm", "cm"},
+    {"km", "km"}, {"ft", "feet"}, {"feet", "feet"}, {"usft", "feet"}, {"in", "inches"}, {"inch", "inches"}};
 
 std::optional<ColumnTriple> find_triple(std::span<const std::string> plain, const Triple& wanted, auto&& same) {
   ColumnTriple places{};
   for (std::size_t k = 0; k < 3; ++k) {
-    const auto found = std::find_if(plain.begin(), plain.end(), [&](const auto& name) { return same(name, wanted[k]); });
+    const auto found =
+        std::find_if(plain.begin(), plain.end(), [&](const auto& name) { return same(name, wanted[k]); });
     if (found == plain.end()) return std::nullopt;
     places[k] = static_cast<std::size_t>(found - plain.begin());
   }
@@ -128,13 +129,16 @@ PointNames find_point_names(std::span<const std::string> names) {
   for (const Triple& channels : kColors) {
     if (found.color) break;
     found.color = find_triple(plain, channels, equal);
-    const auto is_there = [&](std::string_view name) { return std::find(plain.begin(), plain.end(), name) != plain.end(); };
+    const auto is_there = [&](std::string_view name) {
+      return std::find(plain.begin(), plain.end(), name) != plain.end();
+    };
     const auto n = static_cast<std::size_t>(std::count_if(channels.begin(), channels.end(), is_there));
     found.n_color_channels = std::max(found.n_color_channels, n);
   }
   for (const std::string_view name : kPacked) {
     const auto place = std::find(plain.begin(), plain.end(), name);
-    if (place != plain.end() && !found.packed_color) found.packed_color = static_cast<std::size_t>(place - plain.begin());
+    if (place != plain.end() && !found.packed_color)
+      found.packed_color = static_cast<std::size_t>(place - plain.begin());
   }
   return found;
 }
@@ -150,8 +154,9 @@ bool names_degrees(std::span<const std::string> names) {
   const std::vector<std::string> plain = plain_names(names);
   const auto any_starts_with = [&](std::initializer_list<std::string_view> starts) {
     return std::any_of(plain.begin(), plain.end(), [&](const std::string& name) {
-      return std::any_of(starts.begin(), starts.end(),
-                         [&](std::string_view start) { return name == start || (start.size() > 3 && name.starts_with(start)); });
+      return std::any_of(starts.begin(), starts.end(), [&](std::string_view start) {
+        return name == start || (start.size() > 3 && name.starts_with(start));
+      });
     });
   };
   return any_starts_with({"lat", "latitude"}) && any_starts_with({"lon", "lng", "longitude"});

@@ -25,8 +25,9 @@ std::vector<std::string> names_of(std::span<const Field> fields) {
 
 void fail_without_position(const ByteSource& source, const std::vector<std::string>& names) {
   if (names_degrees(names)) {
-    source.fail("header: the points are given as longitude and latitude; project them to meters first (pdal translate "
-                "with filters.reprojection)");
+    source.fail(
+        "header: the points are given as longitude and latitude; project them to meters first (pdal translate "
+        "with filters.reprojection)");
   }
   for (const std::string_view axis : {"x", "y", "z"}) {
     const auto is_axis = [&](const std::string& name) { return plain_name(name) == axis; };

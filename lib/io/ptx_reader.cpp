@@ -18,7 +18,7 @@ constexpr double kFarthestView_m = 10'000.0;
 /// What was found of a scan.
 struct ScanRows {
   std::uint64_t n = 0;
-  std::uint64_t n_beyond = 0;  ///< after the last of the grid
+  std::uint64_t n_beyond = 0;                                      ///< after the last of the grid
   double nearest_sq_m2 = std::numeric_limits<double>::infinity();  ///< from the scanner to a point
 };
 
@@ -108,8 +108,8 @@ void report(const PtxScan& scan, const ScanRows& rows, FileInfo& info) {
   if (rows.nearest_sq_m2 <= kFarthestView_m * kFarthestView_m) {
     info.sensor_positions.push_back(scan.sensor);
   } else if (std::isfinite(rows.nearest_sq_m2)) {
-    info.notes.push_back(fmt::format("scan {}: its scanner is not known (the header's place is far from all points)",
-                                     scan.index));
+    info.notes.push_back(
+        fmt::format("scan {}: its scanner is not known (the header's place is far from all points)", scan.index));
   }
 }
 

@@ -42,9 +42,8 @@ PointColumns columns_at(const RecordLayout& layout, const std::byte* data) {
 }
 
 void read_records(ByteSource& source, std::uint64_t n, const RecordLayout& layout, CloudBuilder& builder) {
-  for_each_block(source, n, layout.bytes, [&](const std::byte* data, std::size_t count) {
-    builder.append(columns_at(layout, data), count);
-  });
+  for_each_block(source, n, layout.bytes,
+                 [&](const std::byte* data, std::size_t count) { builder.append(columns_at(layout, data), count); });
 }
 
 }  // namespace cmap

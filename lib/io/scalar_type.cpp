@@ -30,11 +30,10 @@ double scalar_max(ScalarType type) {
 std::optional<ScalarType> scalar_from_ply_name(std::string_view name) {
   using enum ScalarType;
   static constexpr std::pair<std::string_view, ScalarType> kNames[] = {
-      {"char", kInt8},     {"int8", kInt8},       {"uchar", kUint8},    {"uint8", kUint8},
-      {"short", kInt16},   {"int16", kInt16},     {"ushort", kUint16},  {"uint16", kUint16},
-      {"int", kInt32},     {"int32", kInt32},     {"uint", kUint32},    {"uint32", kUint32},
-      {"int64", kInt64},   {"uint64", kUint64},   {"bool", kUint8},     {"float", kFloat32},
-      {"float32", kFloat32}, {"double", kFloat64}, {"float64", kFloat64}};
+      {"char", kInt8},     {"int8", kInt8},       {"uchar", kUint8},    {"uint8", kUint8},    {"short", kInt16},
+      {"int16", kInt16},   {"ushort", kUint16},   {"uint16", kUint16},  {"int", kInt32},      {"int32", kInt32},
+      {"uint", kUint32},   {"uint32", kUint32},   {"int64", kInt64},    {"uint64", kUint64},  {"bool", kUint8},
+      {"float", kFloat32}, {"float32", kFloat32}, {"double", kFloat64}, {"float64", kFloat64}};
   for (const auto& [known, type] : kNames) {
     if (known == name) return type;
   }

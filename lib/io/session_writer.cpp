@@ -82,7 +82,8 @@ void write_session_predictions(const SessionPredictions& session, const std::fil
   write_array(partial / "depth_conf.npy", ScalarType::kFloat32, pixels, session.depth_confidence.data());
   if (!session.world_points.empty()) {
     write_array(partial / "world_points.npy", ScalarType::kFloat32, triples, session.world_points.data());
-    write_array(partial / "world_points_conf.npy", ScalarType::kFloat32, pixels, session.world_points_confidence.data());
+    write_array(partial / "world_points_conf.npy", ScalarType::kFloat32, pixels,
+                session.world_points_confidence.data());
   }
   write_cameras(session, partial);
   write_meta(session, partial / "meta.json");

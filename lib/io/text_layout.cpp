@@ -96,7 +96,8 @@ void assign_by_names(const Names& names, TextLayout& layout, FileInfo& info) {
   Names unused;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto is_i = [i](std::size_t column) { return column == i; };
-    const bool used = std::ranges::any_of(layout.position, is_i) || (layout.color && std::ranges::any_of(*layout.color, is_i));
+    const bool used =
+        std::ranges::any_of(layout.position, is_i) || (layout.color && std::ranges::any_of(*layout.color, is_i));
     if (!used) unused.push_back(names[i]);
   }
   note_unused(unused, "columns", info);

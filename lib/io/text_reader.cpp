@@ -73,7 +73,8 @@ class TextParser {
 /// Holds the counts that a file announces against the rows that follow them.
 class BlockCount {
  public:
-  BlockCount(const ByteSource& source, std::optional<std::uint64_t> announced) : source_(source), announced_(announced) {}
+  BlockCount(const ByteSource& source, std::optional<std::uint64_t> announced)
+      : source_(source), announced_(announced) {}
 
   void add_row() { ++rows_; }
   /// A line within the rows that may be the next block's count.

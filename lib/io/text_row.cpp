@@ -17,7 +17,9 @@ std::string_view without_quotes(std::string_view text) {
 bool may_have_decimal_comma(std::string_view column) {
   const std::size_t comma = column.find(',');
   if (comma == std::string_view::npos) return column.find('.') == std::string_view::npos;
-  const auto is_digit = [&](std::size_t i) { return i < column.size() && std::isdigit(static_cast<unsigned char>(column[i])); };
+  const auto is_digit = [&](std::size_t i) {
+    return i < column.size() && std::isdigit(static_cast<unsigned char>(column[i]));
+  };
   return column.find_first_of(",.", comma + 1) == std::string_view::npos && comma > 0 && is_digit(comma - 1) &&
          is_digit(comma + 1);
 }
@@ -68,7 +70,8 @@ RowFormat row_format(const ByteSource& source, std::string_view row, std::uint64
   for (const char separator : {';', '\t'}) {
     if (!holds(row, separator)) continue;
     if (has_decimal_commas(row, separator)) return {separator, true};
-    if (separator == ';') source.fail("line {}: mixes ';' and ','; decimal commas cannot be told from separators", number);
+    if (separator == ';')
+      source.fail("line {}: mixes ';' and ','; decimal commas cannot be told from separators", number);
   }
   std::vector<std::string_view> columns;
   split_row(row, ',', columns);

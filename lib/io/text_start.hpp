@@ -18,12 +18,12 @@ struct TextLine {
 
 /// The start of a text file: everything that decides what its columns are.
 struct TextStart {
-  std::vector<TextLine> comments;         ///< before the rows, without their marks
-  std::optional<TextLine> header;         ///< the line before the rows that is no comment and no numbers
-  std::optional<std::uint64_t> count;     ///< of a line that holds nothing but the number of points
-  std::vector<TextLine> rows;             ///< the first ones, at most kRows
-  RowFormat format;                       ///< theirs
-  bool whole = false;                     ///< these are all rows of the file
+  std::vector<TextLine> comments;      ///< before the rows, without their marks
+  std::optional<TextLine> header;      ///< the line before the rows that is no comment and no numbers
+  std::optional<std::uint64_t> count;  ///< of a line that holds nothing but the number of points
+  std::vector<TextLine> rows;          ///< the first ones, at most kRows
+  RowFormat format;                    ///< theirs
+  bool whole = false;                  ///< these are all rows of the file
 
   static constexpr std::size_t kRows = 1024;
 };

@@ -11,7 +11,8 @@ namespace cmap {
 namespace {
 
 /// What may follow x y z: r red, green and blue; n a normal; a alpha; i intensity, label, curvature.
-constexpr std::string_view kLayouts[] = {"r", "n", "ra", "ri", "ir", "rn", "nr", "irn", "ran", "nra", "nri", "ni", "in"};
+constexpr std::string_view kLayouts[] = {"r",   "n",   "ra",  "ri",  "ir", "rn", "nr",
+                                         "irn", "ran", "nra", "nri", "ni", "in"};
 
 std::size_t width_of(char role) { return role == 'r' || role == 'n' ? 3 : 1; }
 
@@ -81,7 +82,8 @@ Triple measure(const NumberTable& table, std::size_t first) {
       triple.fractions = triple.fractions || v != std::floor(v);
       sq_length += v * v;
     }
-    triple.unit_or_zero = triple.unit_or_zero && (sq_length == 0.0 || std::abs(std::sqrt(sq_length) - 1.0) < kTolerance);
+    triple.unit_or_zero =
+        triple.unit_or_zero && (sq_length == 0.0 || std::abs(std::sqrt(sq_length) - 1.0) < kTolerance);
   }
   compare_channels(table, first, triple);
   return triple;
@@ -155,7 +157,8 @@ std::optional<ColumnTriple> find_unnamed_colors(const NumberTable& table, bool i
   for (const std::string_view layout : kLayouts) {
     if (fits(table, layout)) fitting.push_back(layout);
   }
-  // A column that is alpha throughout would be a strange blue or intensity, but for a kind of file that has intensities.
+  // A column that is alpha throughout would be a strange blue or intensity, but for a kind of file that has
+  // intensities.
   prefer([&](std::string_view l) { return intensity_first ? l.starts_with('i') : l.find('a') != l.npos; }, fitting);
   if (fitting.empty()) {
     note_ignored(table, info);
@@ -163,17 +166,17 @@ std::optional<ColumnTriple> find_unnamed_colors(const NumberTable& table, bool i
   }
   if (fitting.size() > 1) {
     info.warnings.push_back(
-        {"undecidable_columns", fmt::format("no color taken: {} can be read in more than one way (colors, normals, intensity); "
-                                            "names such as 'x y z r g b' would say which they are",
-                                            column_range(4, table.columns))});
+        {"undecidable_columns",
+         fmt::format("no color taken: {} can be read in more than one way (colors, normals, intensity); "
+                     "names such as 'x y z r g b' would say which they are",
+                     column_range(4, table.columns))});
     return std::nullopt;
   }
   const std::size_t color = place_of_color(fitting[0]);
   if (color == 0) {
-    info.notes.push_back(fmt::format("no color: {} taken as a normal{}", column_range(4, table.columns),
-                                     measure(table, 3).highest == 0.0 && measure(table, 3).lowest == 0.0
-                                         ? " that is zero throughout"
-                                         : ""));
+    info.notes.push_back(fmt::format(
+        "no color: {} taken as a normal{}", column_range(4, table.columns),
+        measure(table, 3).highest == 0.0 && measure(table, 3).lowest == 0.0 ? " that is zero throughout" : ""));
     return std::nullopt;
   }
   info.notes.push_back(fmt::format("columns {} to {} taken as red, green and blue", color + 1, color + 3));

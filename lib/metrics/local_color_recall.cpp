@@ -31,7 +31,7 @@ RecallClass class_of(float sq_color, float right) {
 
 /// The colors, with a far one in place of those that are not there: boxes and comparisons need numbers.
 Array<ColorBlock> without_gaps(Array<ColorBlock> colors, float far) {
-  const auto fill = [&](float (&values)[kBlockSize]) {
+  const auto fill = [&](float(&values)[kBlockSize]) {
     for (float& v : values) v = std::isnan(v) ? far : v;
   };
   for (ColorBlock& block : colors) {
@@ -65,8 +65,7 @@ struct RecallCounts {
 };
 
 /// Fills in the classes of all points and counts them.
-RecallCounts classify(const IndexedMap& reference, const Array<float>& best, float right,
-                      Array<RecallClass>& classes) {
+RecallCounts classify(const IndexedMap& reference, const Array<float>& best, float right, Array<RecallClass>& classes) {
   return ordered_sum<RecallCounts>(classes.size(), kLoopChunk, [&](std::size_t begin, std::size_t end) {
     RecallCounts counts;
     for (std::size_t j = begin; j < end; ++j) {
@@ -102,8 +101,7 @@ LocalColorRecall local_color_recall(const MapPair& pair, const LocalColorRecallO
   const float right = color_limit(options.tau);
   const float stop_at = options.curve ? std::min(right, color_limit(curve_tau(0))) : right;
   const float limit = options.curve ? std::max(right, color_limit(curve_tau(kCurvePoints - 1))) : right;
-  const Array<float> best =
-      best_colors(pair, {options.radius_m, stop_at, next_above(limit), options.radius_steps});
+  const Array<float> best = best_colors(pair, {options.radius_m, stop_at, next_above(limit), options.radius_steps});
 
   LocalColorRecall recall;
   recall.n_reference = pair.reference.size() - pair.reference.n_without_color;

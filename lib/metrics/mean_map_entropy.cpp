@@ -43,8 +43,8 @@ MeanMapEntropy mean_map_entropy(const NeighborhoodShape& shape, std::uint64_t mi
     }
     return part;
   });
-  return {0.5 * (constant() + total.log_det / static_cast<double>(total.n)), total.n,
-          n_points - total.n - total.n_flat, total.n_flat};
+  return {0.5 * (constant() + total.log_det / static_cast<double>(total.n)), total.n, n_points - total.n - total.n_flat,
+          total.n_flat};
 }
 
 }  // namespace cmap

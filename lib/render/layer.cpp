@@ -99,8 +99,8 @@ Layer consistency_layer(const Evaluation& evaluation, const LayerOptions& option
   if (!map.has_color()) throw UnsupportedError("layer ccs: the estimate needs color");
   const double voxel_m = evaluation.options.ccs_voxel_m;
   VoxelValues voxels(map, voxel_m);
-  for (const auto& [index, trace] : voxel_color_spreads(map, voxel_m, evaluation.options.ccs_min_points,
-                                                       evaluation.options.ccs_singletons)) {
+  for (const auto& [index, trace] :
+       voxel_color_spreads(map, voxel_m, evaluation.options.ccs_min_points, evaluation.options.ccs_singletons)) {
     voxels.set(index, trace);
   }
   return voxel_layer(map, fmt::format("Color spread in voxels of {} m", voxel_m), ColorMap::kInferno, "unit RGB²",

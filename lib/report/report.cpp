@@ -122,12 +122,14 @@ void add_warnings(Json& warnings, const std::vector<Warning>& found) {
 /// A network's or a LiDAR's intensity is easily exported as a color.
 void warn_of_gray(Json& warnings, const InputDescription& reference, const InputDescription& estimate) {
   const auto is_colored = [](const InputDescription& map) { return map.color != "none" && !map.file.gray_colors; };
-  for (const auto& [gray, other, which] : {std::tuple(&estimate, &reference, "estimate"), std::tuple(&reference, &estimate, "reference")}) {
+  for (const auto& [gray, other, which] :
+       {std::tuple(&estimate, &reference, "estimate"), std::tuple(&reference, &estimate, "reference")}) {
     if (!gray->file.gray_colors || gray->color == "none" || !is_colored(*other)) continue;
-    warnings.push_back({{"id", "gray_colors"},
-                        {"message", fmt::format("every color of the {} is a gray, beside a colored map: is it an intensity, "
-                                                "or were its pictures gray?",
-                                                which)}});
+    warnings.push_back(
+        {{"id", "gray_colors"},
+         {"message", fmt::format("every color of the {} is a gray, beside a colored map: is it an intensity, "
+                                 "or were its pictures gray?",
+                                 which)}});
   }
 }
 

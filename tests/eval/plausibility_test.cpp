@@ -234,7 +234,8 @@ TEST(Strays, AnOutlierAmongOthersIsNone) {
   std::vector<Eigen::Vector3d> estimate = grid(1.0, 0.125);
   for (std::size_t i = 0; i < 10; ++i) estimate[10 * i].z() = 50.0 + static_cast<double>(i);
   EXPECT_THAT(said(warnings_of(grid(1.0), estimate), "stray_points"), ::testing::SizeIs(0));
-  EXPECT_THAT(said(warnings_of({{0, 0, 0}, {1, 0, 0}}, {{0, 0, 0}, {1, 0, 100}}), "stray_points"), ::testing::SizeIs(0));
+  EXPECT_THAT(said(warnings_of({{0, 0, 0}, {1, 0, 0}}, {{0, 0, 0}, {1, 0, 100}}), "stray_points"),
+              ::testing::SizeIs(0));
 }
 
 TEST(Steps, AreSaidUnlessTheyAreARasters) {
@@ -296,7 +297,8 @@ TEST(Spacing, IsNoMatterOfOtherErrors) {
 TEST(Spacing, CopiesMakeAReferenceNoDenser) {
   std::vector<Eigen::Vector3d> once = grid(0.5), twice = once;
   twice.insert(twice.end(), once.begin(), once.end());
-  EXPECT_THAT(said(warnings_of(twice, dense_plane(), options_for({"fitness"})), "sparse_reference"), Contains(HasSubstr("a spacing of 0.5 m")));
+  EXPECT_THAT(said(warnings_of(twice, dense_plane(), options_for({"fitness"})), "sparse_reference"),
+              Contains(HasSubstr("a spacing of 0.5 m")));
 }
 
 }  // namespace

@@ -297,7 +297,8 @@ TEST(PoseGraph, SemidefiniteInformation) {
   EXPECT_FALSE(result.chordal_start);
   ASSERT_FALSE(result.warnings.empty());
   EXPECT_THAT(result.warnings[0], HasSubstr("rotation free"));
-  EXPECT_THAT(test::refusal_of<UnsupportedError>([&] { optimize(graph, {GraphStart::kChordal}); }), HasSubstr("rotation free"));
+  EXPECT_THAT(test::refusal_of<UnsupportedError>([&] { optimize(graph, {GraphStart::kChordal}); }),
+              HasSubstr("rotation free"));
 }
 
 TEST(PoseGraph, SaysWhenItHasNotConverged) {

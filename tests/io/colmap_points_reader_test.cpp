@@ -35,8 +35,9 @@ TEST(ColmapText, TracksOfAnyLength) {
 }
 
 TEST(ColmapText, WithoutCommentsByWhatTheRowsHold) {
-  const auto file = read_content("cloud.txt", "9 1.5 -2 3 255 0 7 0.5 1 2\n2 4 5.25 6 10 20 30 0.75 1 7 2 8\n"
-                                              "3 4 5.25 7 10 20 30 0.75 1 7 2 8\n");
+  const auto file = read_content("cloud.txt",
+                                 "9 1.5 -2 3 255 0 7 0.5 1 2\n2 4 5.25 6 10 20 30 0.75 1 7 2 8\n"
+                                 "3 4 5.25 7 10 20 30 0.75 1 7 2 8\n");
   EXPECT_EQ(file.info.format, "COLMAP points3D text");
   EXPECT_EQ(point(file, 1), Eigen::Vector3d(4, 5.25, 6));
 }
@@ -147,8 +148,9 @@ TEST(ColmapBinary, CountsAreCheckedAgainstTheFile) {
 }
 
 TEST(ColmapModel, TheOtherFilesAreNamed) {
-  EXPECT_THAT(refusal("cameras.txt", "# Camera list with one line of data per camera:\n1 PINHOLE 640 480 5 5 320 240\n"),
-              AllOf(HasSubstr("cameras of a COLMAP model"), HasSubstr("points3D.txt")));
+  EXPECT_THAT(
+      refusal("cameras.txt", "# Camera list with one line of data per camera:\n1 PINHOLE 640 480 5 5 320 240\n"),
+      AllOf(HasSubstr("cameras of a COLMAP model"), HasSubstr("points3D.txt")));
   EXPECT_THAT(refusal("x.txt", "# Image list with two lines of data per image:\n1 1 0 0 0 0 0 0 1 a.jpg\n\n"),
               HasSubstr("images of a COLMAP model"));
   Bytes cameras;

@@ -79,8 +79,10 @@ TEST(ColorScale, EveryTypeAndScaleOfOneCard) {
   EXPECT_EQ(times_256.info.notes.size(), 1U) << "said once";
   expect_card(read_content("a.ply", ply_of("short", mapped<std::int16_t>(same))), 0.0, "short");
   expect_card(read_content("a.ply", ply_of("int", mapped<std::int32_t>(same))), 0.0, "int");
-  expect_card(read_content("a.ply", ply_of("uint", mapped<std::uint32_t>([](int v) { return 257 * v; }))), 0.0, "uint x 257");
-  expect_card(read_content("a.ply", ply_of("uint", mapped<std::uint32_t>([](int v) { return 256 * v; }))), 0.0, "uint x 256");
+  expect_card(read_content("a.ply", ply_of("uint", mapped<std::uint32_t>([](int v) { return 257 * v; }))), 0.0,
+              "uint x 257");
+  expect_card(read_content("a.ply", ply_of("uint", mapped<std::uint32_t>([](int v) { return 256 * v; }))), 0.0,
+              "uint x 256");
   expect_card(read_content("a.ply", ply_of("int64", mapped<std::int64_t>(same))), 0.0, "int64");
   expect_card(read_content("a.ply", ply_of("float", mapped<float>(same))), 0.0, "float 0 to 255");
   expect_card(read_content("a.ply", ply_of("double", mapped<double>(same))), 0.0, "double 0 to 255");
@@ -137,7 +139,8 @@ TEST(ColorScale, RoundingJustOutsideIsCutSilentlyAndMoreIsCounted) {
 }
 
 TEST(ColorScale, NumbersThatAreNoColorsAreRefused) {
-  EXPECT_THAT(refusal("a.ply", ply_of<float>("float", {{1, 2, 3}, {0, 70000, 0}})), HasSubstr("point 2: green = 70000"));
+  EXPECT_THAT(refusal("a.ply", ply_of<float>("float", {{1, 2, 3}, {0, 70000, 0}})),
+              HasSubstr("point 2: green = 70000"));
   EXPECT_THAT(refusal("a.ply", ply_of<float>("float", {{1, 2, 3}, {0, 0, -30}})), HasSubstr("point 2: blue = -30"));
   EXPECT_THAT(refusal("a.ply", ply_of<std::int32_t>("int", {{-1, 2, 200}})), HasSubstr("point 1: red = -1"));
   EXPECT_THAT(refusal("a.ply", ply_of<std::int8_t>("char", {{100, 2, 3}, {-1, 0, 0}})),
@@ -151,10 +154,10 @@ TEST(ColorScale, SignedBytesAndMixedTypesAreTheirNumbers) {
 
 TEST(ColorScale, AllBlackIsNoColorInEveryFormat) {
   const std::string black_text = "1 2 3 0 0 0\n4 5 6 0 0 0\n";
-  for (const auto& file :
-       {read_content("a.ply", ply_of<U8>("uchar", {{0, 0, 0}, {0, 0, 0}})),
-        read_content("a.ply", ply_of<float>("float", {{0, 0, 0}})), read_content("a.ply", ply_of<U16>("ushort", {{0, 0, 0}})),
-        read_content("a.txt", "x y z r g b\n" + black_text)}) {
+  for (const auto& file : {read_content("a.ply", ply_of<U8>("uchar", {{0, 0, 0}, {0, 0, 0}})),
+                           read_content("a.ply", ply_of<float>("float", {{0, 0, 0}})),
+                           read_content("a.ply", ply_of<U16>("ushort", {{0, 0, 0}})),
+                           read_content("a.txt", "x y z r g b\n" + black_text)}) {
     EXPECT_FALSE(file.cloud.has_color());
     EXPECT_THAT(all_warnings(file), HasSubstr("black"));
     EXPECT_EQ(file.info.color_scale, "");
@@ -177,8 +180,9 @@ TEST(ColorScale, NaNIsAPointWithoutColor) {
 
 TEST(ColorScale, DarkColorsAreSaid) {
   const auto twelve_bit = [](int v) { return 16 * v; };
-  EXPECT_THAT(all_warnings(read_content("a.ply", ply_of("ushort", mapped<U16>([&](int v) { return twelve_bit(v) + 5; })))),
-              HasSubstr("of 65535"));
+  EXPECT_THAT(
+      all_warnings(read_content("a.ply", ply_of("ushort", mapped<U16>([&](int v) { return twelve_bit(v) + 5; })))),
+      HasSubstr("of 65535"));
   EXPECT_THAT(all_warnings(read_content("a.ply", ply_of<U8>("uchar", {{0, 1, 1}, {1, 0, 1}}))), HasSubstr("1 of 255"));
   EXPECT_THAT(all_warnings(read_content("a.ply", ply_of<float>("float", {{0.003F, 0.001F, 0.002F}}))),
               HasSubstr("0.003 of 1"));

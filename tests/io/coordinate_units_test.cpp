@@ -106,8 +106,9 @@ TEST(WktUnits, MalformedTextSaysNothingButThat) {
   std::string deep;
   for (int i = 0; i < 100000; ++i) deep += "PROJCS[";
   const std::string whole = projected(R"(UNIT["foot",0.3048])");
-  const std::vector<std::string> texts{R"(PROJCS["a")", R"(PROJCS["a])", "PROJCS[,]", "]",
-                                       "<xml/>[",       whole + "]",    deep,        whole.substr(0, whole.size() / 2)};
+  const std::vector<std::string> texts{
+      R"(PROJCS["a")", R"(PROJCS["a])", "PROJCS[,]", "]",
+      "<xml/>[",       whole + "]",     deep,        whole.substr(0, whole.size() / 2)};
   for (const std::string& wkt : texts) {
     const CoordinateUnits units = units_from_wkt(wkt);
     EXPECT_FALSE(units.says_something());

@@ -42,8 +42,9 @@ TEST(ForeignFormats, SplatsInAnyFileLeadToPoints) {
       {"a.ply", ply + "property float f_dc_0\nend_header\n1 2 3 4\n"},
       {"a.ply", ply + "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float f_dc_0\nproperty "
                       "float f_dc_1\nproperty float f_dc_2\nend_header\n1 2 3 4 5 6 7 8 9\n"},
-      {"a.ply", "ply\nformat binary_little_endian 1.0\nelement chunk 1\nproperty float min_x\nelement vertex 256\n"
-                "property uint packed_position\nend_header\n"},
+      {"a.ply",
+       "ply\nformat binary_little_endian 1.0\nelement chunk 1\nproperty float min_x\nelement vertex 256\n"
+       "property uint packed_position\nend_header\n"},
       {"a.ply", "ply\r\nformat ascii 1.0\r\nelement vertex 1\r\nproperty uint packed_position\r\nend_header\r\n1\r\n"},
       {"a.csv", "x,y,z,nx,ny,nz,f_dc_0,f_dc_1,f_dc_2,opacity\n1,2,3,0,0,0,0.1,0.2,0.3,5\n"},
       {"a.spz", gzip(header)},
@@ -125,7 +126,7 @@ TEST(ForeignFormats, NamedByContent) {
 
 TEST(ForeignFormats, NamedByExtension) {
   const std::pair<const char*, const char*> kFiles[] = {
-      {"a.FLS", "FARO"}, {"a.rcp", "ReCap"},      {"a.rcs", "ReCap"},      {"a.las", "LASF"},  {"a.laz", "LASF"},
+      {"a.FLS", "FARO"},  {"a.rcp", "ReCap"},      {"a.rcs", "ReCap"},      {"a.las", "LASF"},  {"a.laz", "LASF"},
       {"a.rxp", "RIEGL"}, {"a.stl", "mesh (STL)"}, {"a.off", "mesh (OFF)"}, {"a.pkl", "pickle"}};
   for (const auto& [name, message] : kFiles) {
     EXPECT_THAT(refusal(name, "\x01\x02\x03hello"), HasSubstr(message)) << name;

@@ -56,9 +56,10 @@ TEST(LasUnits, WktBehindThePoints) {
 
 TEST(LasUnits, MetersAndFilesThatSayNothingStayAsTheyAre) {
   Las las = las_at(2, 3);
-  for (const std::vector<LasRecord>& records :
-       {std::vector<LasRecord>{}, {geo_keys_record({kProjected, {3072, 0, 1, 32633}})},
-        {wkt_record(R"(PROJCS["p",UNIT["metre",1]])")}, {{"somebody", 2112, kSurveyFeet}}}) {
+  for (const std::vector<LasRecord>& records : {std::vector<LasRecord>{},
+                                                {geo_keys_record({kProjected, {3072, 0, 1, 32633}})},
+                                                {wkt_record(R"(PROJCS["p",UNIT["metre",1]])")},
+                                                {{"somebody", 2112, kSurveyFeet}}}) {
     las.records = records;
     const auto file = read_content("a.las", las.file().str());
     EXPECT_LT((point(file, 0) - Eigen::Vector3d(1000, 2000, 30)).norm(), kFloats_m);

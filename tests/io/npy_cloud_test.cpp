@@ -78,7 +78,8 @@ TEST(NpyCloud, TransposedArraysAreReadAndSaid) {
   planes.insert(planes.end(), 12, 1.0F);  // homogeneous
   expect_samples(read("'<f4'", "(4, 12)", raw(planes)), 12, false);
   // As few as rows have numbers: two readings.
-  EXPECT_THAT(refused("'<f4'", "(3, 5)", std::string(60, '\0')), HasSubstr("3 points of 5 numbers or 5 points transposed"));
+  EXPECT_THAT(refused("'<f4'", "(3, 5)", std::string(60, '\0')),
+              HasSubstr("3 points of 5 numbers or 5 points transposed"));
 }
 
 TEST(NpyCloud, MatricesAndPosesAreNamed) {
@@ -166,17 +167,18 @@ std::string records(std::size_t n, std::string_view between = "", std::string_vi
 }
 
 TEST(NpyCloud, RecordsByTheirNames) {
-  const auto file = read("[('x', '<f4'), ('y', '<f4'), ('z', '<f4'), ('red', '|u1'), ('green', '|u1'), ('blue', '|u1')]",
-                         "(5,)", records<float, U8>(5));
+  const auto file =
+      read("[('x', '<f4'), ('y', '<f4'), ('z', '<f4'), ('red', '|u1'), ('green', '|u1'), ('blue', '|u1')]", "(5,)",
+           records<float, U8>(5));
   EXPECT_EQ(file.info.format, "NPY records");
   expect_samples(file, 5, true);
   expect_samples(read("[('X', '<f8'), ('Y', '<f8'), ('Z', '<f8'), ('label', '<i4'), ('R', '<i8'), ('G', '<i8'), ('B', "
                       "'<i8')]",
                       "(5,)", records<double, std::int64_t>(5, "abcd")),
                  5, true);
-  expect_samples(read("[('xyz', '<f4', (3,)), ('rgb', '|u1', (3,)), ('', '|V1')]", "(5,)",
-                      records<float, U8>(5, "", "p")),
-                 5, true);
+  expect_samples(
+      read("[('xyz', '<f4', (3,)), ('rgb', '|u1', (3,)), ('', '|V1')]", "(5,)", records<float, U8>(5, "", "p")), 5,
+      true);
   expect_samples(read("[('position', [('x', '<f4'), ('y', '<f4'), ('z', '<f4')]), ('name', '|S2'), ('color', '<f4', "
                       "(3,))]",
                       "(5, 1)", records<float, float>(5, "ab")),
@@ -190,7 +192,8 @@ TEST(NpyCloud, RecordsByTheirNames) {
 /// A normal's x, y and z do not get in the way of the position's.
 TEST(NpyCloud, RecordsWithinRecords) {
   const std::string descr =
-      "[('normal', [('x', '<f4'), ('y', '<f4'), ('z', '<f4')]), ('position', [('x', '<f4'), ('y', '<f4'), ('z', '<f4')])]";
+      "[('normal', [('x', '<f4'), ('y', '<f4'), ('z', '<f4')]), ('position', [('x', '<f4'), ('y', '<f4'), ('z', "
+      "'<f4')])]";
   const auto file = read(descr, "(1,)", raw<float>({0, 0, 1, 5, 6, 7}));
   EXPECT_EQ(point(file, 0), Eigen::Vector3d(5, 6, 7));
 }
@@ -216,7 +219,8 @@ TEST(NpyCloud, RawIntegersOfLasAreRefused) {
     return refused(fmt::format("[('{}', '<i4'), ('{}', '<i4'), ('{}', '<i4'), ('{}', '<u2')]", x, y, z, more), "(2,)",
                    std::string(28, '\1'));
   };
-  EXPECT_THAT(refusal_of("X", "Y", "Z", "intensity"), AllOf(HasSubstr("integers (<i4)"), HasSubstr("scale and offset")));
+  EXPECT_THAT(refusal_of("X", "Y", "Z", "intensity"),
+              AllOf(HasSubstr("integers (<i4)"), HasSubstr("scale and offset")));
   EXPECT_THAT(refusal_of("X", "Y", "Z", "other"), HasSubstr("scale and offset"));
   EXPECT_THAT(refusal_of("x", "y", "z", "gps_time"), HasSubstr("scale and offset"));
   EXPECT_EQ(refusal_of("x", "y", "z", "label"), "");

@@ -31,7 +31,8 @@ TEST(NpyArray, EveryTypeAndVersion) {
   EXPECT_EQ(read_array(npy_text("'<u2'", "(1,)", raw<U16>({65535}))).to_doubles(), Array<double>{65535});
   EXPECT_EQ(read_array(npy_text("'<u4'", "(1,)", raw<std::uint32_t>({0xffffffff}))).to_doubles(),
             Array<double>{4294967295.0});
-  EXPECT_EQ(read_array(npy_text("'<u8'", "(1,)", raw<std::uint64_t>({1ULL << 63}))).to_doubles(), Array<double>{0x1p63});
+  EXPECT_EQ(read_array(npy_text("'<u8'", "(1,)", raw<std::uint64_t>({1ULL << 63}))).to_doubles(),
+            Array<double>{0x1p63});
 }
 
 /// The bytes of each value as they stand in a file, most significant first.
@@ -79,8 +80,9 @@ TEST(NpyArray, RecordsAsNumpyDescribesThem) {
   EXPECT_EQ(aligned.fields[3].offset, 8U);
   EXPECT_EQ(aligned.fields[3].count, 3U);
   EXPECT_TRUE(aligned.fields[3].big_endian);
-  const NpyHeader nested = header_of("[('p', [('x', '<f4'), ('y', '<f4')]), ('n', [('x', '<f8')]), ('t', '<M8[ns]'), "
-                                     "('s', '<U5'), ('many', [('a', '|u1'), ('b', '<i2')], (2, 3))]");
+  const NpyHeader nested = header_of(
+      "[('p', [('x', '<f4'), ('y', '<f4')]), ('n', [('x', '<f8')]), ('t', '<M8[ns]'), "
+      "('s', '<U5'), ('many', [('a', '|u1'), ('b', '<i2')], (2, 3))]");
   EXPECT_EQ(nested.type_text(), "records of p.x, y, n.x, t, s, many");
   EXPECT_EQ(nested.item_bytes, 4U + 4 + 8 + 8 + 20 + 18);
   EXPECT_EQ(nested.fields[5].kind, NpyKind::kOther);

@@ -37,10 +37,13 @@ std::string planes(std::size_t frames, std::size_t pixels, double scale) {
 
 TEST(NpzCloud, PointsAndColorsByTheirUsualNames) {
   const std::pair<const char*, const char*> kNames[] = {
-      {"points", "colors"},      {"xyz", "rgb"},        {"positions", "colors"}, {"Points", "Colors"},
-      {"pointcloud", "color"},   {"XYZ", "RGB"},        {"position", "colours"}, {"vertices", "vertex_colors"},
-      {"world_points", "images"}, {"pts3d", "rgb"},     {"point", "color"},      {"coords", "colour"},
-      {"point_cloud", "image"},  {"world_points_from_depth", "images"}};
+      {"points", "colors"},       {"xyz", "rgb"},
+      {"positions", "colors"},    {"Points", "Colors"},
+      {"pointcloud", "color"},    {"XYZ", "RGB"},
+      {"position", "colours"},    {"vertices", "vertex_colors"},
+      {"world_points", "images"}, {"pts3d", "rgb"},
+      {"point", "color"},         {"coords", "colour"},
+      {"point_cloud", "image"},   {"world_points_from_depth", "images"}};
   for (const auto& [xyz, rgb] : kNames) {
     SCOPED_TRACE(xyz);
     expect_samples(read({{xyz, points("(6, 3)", 6)}, {rgb, colors("(6, 3)", 6)}}), 6, true);
@@ -168,12 +171,13 @@ TEST(NpzCloud, TheArrayIsFoundByItsShape) {
   expect_samples(read({{"arr_0", points("(6, 3)", 6)}}), 6, false);
   const auto lone = read({{"my_map", points("(6, 3)", 6)}, {"normals", points("(6, 3)", 6)}, {"T", matrix}});
   expect_samples(lone, 6, false);
-  EXPECT_THAT(all_notes(lone), AllOf(HasSubstr("the array my_map taken as the points"), HasSubstr("not used: normals, T")));
+  EXPECT_THAT(all_notes(lone),
+              AllOf(HasSubstr("the array my_map taken as the points"), HasSubstr("not used: normals, T")));
   EXPECT_THAT(refused({{"a", points("(6, 3)", 6)}, {"b", points("(5, 3)", 5)}}),
               AllOf(HasSubstr("several arrays may be the points"), HasSubstr("a (6, 3) <f4, b (5, 3) <f4")));
   // A usual name with another shape is passed over, where another has both.
-  expect_samples(read({{"points", npy_text("'<f4'", "(6, 2)", std::string(48, '\0'))}, {"xyz", points("(6, 3)", 6)}}), 6,
-                 false);
+  expect_samples(read({{"points", npy_text("'<f4'", "(6, 2)", std::string(48, '\0'))}, {"xyz", points("(6, 3)", 6)}}),
+                 6, false);
   EXPECT_THAT(refused({{"points", npy_text("'<f4'", "(6, 2)", std::string(48, '\0'))}, {"T", matrix}}),
               HasSubstr("points.npy: has the shape (6, 2), without a z"));
 }

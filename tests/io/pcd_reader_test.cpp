@@ -127,12 +127,14 @@ TEST(PcdReader, OrganizedCloudsAndViewpoints) {
 }
 
 TEST(PcdReader, UpperCaseFieldsWithColorsOfAnyType) {
-  Header header{.fields = "X Y Z Red Green Blue", .sizes = "4 4 4 2 2 2", .types = "F F F U U U", .counts = "1 1 1 1 1 1"};
+  Header header{
+      .fields = "X Y Z Red Green Blue", .sizes = "4 4 4 2 2 2", .types = "F F F U U U", .counts = "1 1 1 1 1 1"};
   EXPECT_EQ(read_content("a.pcd", header.str() + "1 2 3 10 20 30\n").cloud.colors, Colors(Array<Rgb8>{{10, 20, 30}}));
   header.sizes = "4 4 4 4 4 4";
   for (const char* types : {"F F F I I I", "F F F F F F", "F F F U U U"}) {
     header.types = types;
-    EXPECT_EQ(read_content("a.pcd", header.str() + "1 2 3 10 20 255\n").cloud.colors, Colors(Array<Rgb8>{{10, 20, 255}}));
+    EXPECT_EQ(read_content("a.pcd", header.str() + "1 2 3 10 20 255\n").cloud.colors,
+              Colors(Array<Rgb8>{{10, 20, 255}}));
   }
 }
 
@@ -140,7 +142,8 @@ TEST(PcdReader, FieldsOfCountZeroTakeNoRoom) {
   Header header{.fields = "x y z _ t", .sizes = "4 4 4 1 2", .types = "F F F U U", .counts = "1 1 1 0 1"};
   EXPECT_EQ(point(read_content("a.pcd", header.str() + "1 2 3 7\n"), 0), Eigen::Vector3d(1, 2, 3));
   header.data = "binary";
-  EXPECT_EQ(point(read_content("a.pcd", Bytes(header.str()).put(1.0F, 2.0F, 3.0F, U16{7}).str()), 0), Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(point(read_content("a.pcd", Bytes(header.str()).put(1.0F, 2.0F, 3.0F, U16{7}).str()), 0),
+            Eigen::Vector3d(1, 2, 3));
 }
 
 TEST(PcdReader, PackedColorsLostAsNanAreNoColors) {
@@ -163,7 +166,8 @@ TEST(PcdReader, WhatFollowsThePointsIsSaidOrRefused) {
   const Bytes binary = Bytes(with_data({}, "binary").str()).put(1.0F, 2.0F, 3.0F);
   EXPECT_THAT(refusal("a.pcd", Bytes(binary.str()).put(4.0F).str()), HasSubstr("4 bytes are left over"));
   EXPECT_EQ(read_content("a.pcd", Bytes(binary.str()).text("\n").str()).cloud.size(), 1U);
-  EXPECT_THAT(all_notes(read_content("a.pcd", Bytes(binary.str()).put(std::uint64_t{0}).str())), HasSubstr("8 bytes of nothing"));
+  EXPECT_THAT(all_notes(read_content("a.pcd", Bytes(binary.str()).put(std::uint64_t{0}).str())),
+              HasSubstr("8 bytes of nothing"));
 }
 
 TEST(PcdReader, HeaderWithoutCommentsCountsOrPoints) {

@@ -38,7 +38,8 @@ std::string with_line_ends(std::string_view text, std::string_view end) {
 }
 
 TEST(PlyReader, LineEndsAndByteOrderMark) {
-  const std::string ascii = header("ascii", vertices(1, kXyz)), binary = header("binary_little_endian", vertices(1, kXyz));
+  const std::string ascii = header("ascii", vertices(1, kXyz)),
+                    binary = header("binary_little_endian", vertices(1, kXyz));
   // The body begins with the byte of a line feed: it belongs to the number, not to the header's last line.
   const std::string body = Bytes().put(0.0F, 2.0F, 3.0F).set(0, '\n').str();
   for (const std::string_view end : {"\n", "\r\n", "\r"}) {
@@ -67,7 +68,8 @@ TEST(PlyReader, BytesLeftOverAreAnError) {
   // A property that the header leaves out: every point is one byte longer than it says.
   Bytes bytes(header("binary_little_endian", vertices(3, kXyz + kRgb)));
   for (int i = 0; i < 3; ++i) bytes.put(static_cast<float>(i), 2.0F, 3.0F, U8{1}, U8{2}, U8{3}, U8{255});
-  EXPECT_THAT(refusal("a.ply", bytes.str()), HasSubstr("3 bytes are left over after all that the header says, exactly 1 a point"));
+  EXPECT_THAT(refusal("a.ply", bytes.str()),
+              HasSubstr("3 bytes are left over after all that the header says, exactly 1 a point"));
   Bytes one(header("binary_little_endian", vertices(1, kXyz)));
   one.put(1.0F, 2.0F, 3.0F);
   EXPECT_EQ(read_content("a.ply", Bytes(one.str()).text("\n").str()).cloud.size(), 1U) << "a line end is no point";
@@ -90,10 +92,11 @@ TEST(PlyReader, MeshesAreNamed) {
   const std::string face = "element face 2\nproperty list uchar int vertex_indices\n";
   const std::string colored = face + "property uchar red\nproperty uchar green\nproperty uchar blue\n";
   const std::string points = "0 0 0\n1 0 0\n0 1 0\n";
-  EXPECT_THAT(warnings_of(read_content("a.ply", header("ascii", vertices(3, kXyz) + face) + points + "3 0 1 2\n3 2 1 0\n")),
-              HasSubstr("mesh of 2 faces"));
-  EXPECT_THAT(warnings_of(read_content("a.ply", header("ascii", vertices(3, kXyz) + colored) + points +
-                                                    "3 0 1 2 9 9 9\n3 2 1 0 9 9 9\n")),
+  EXPECT_THAT(
+      warnings_of(read_content("a.ply", header("ascii", vertices(3, kXyz) + face) + points + "3 0 1 2\n3 2 1 0\n")),
+      HasSubstr("mesh of 2 faces"));
+  EXPECT_THAT(warnings_of(read_content(
+                  "a.ply", header("ascii", vertices(3, kXyz) + colored) + points + "3 0 1 2 9 9 9\n3 2 1 0 9 9 9\n")),
               HasSubstr("only the faces of the mesh have colors"));
 }
 
@@ -104,7 +107,8 @@ TEST(PlyReader, AFileThatEndsWithinItsFacesIsSaid) {
   EXPECT_THAT(warnings_of(read_content("a.ply", bytes.str())), ::testing::Not(HasSubstr("ends early")));
   for (std::size_t missing = 1; missing <= 26; ++missing) {
     const auto file = read_content("a.ply", bytes.str().substr(0, bytes.str().size() - missing));
-    EXPECT_THAT(warnings_of(file), HasSubstr(missing <= 13 ? "after 1 of 2 rows of 'face'" : "after 0 of 2 rows of 'face'"));
+    EXPECT_THAT(warnings_of(file),
+                HasSubstr(missing <= 13 ? "after 1 of 2 rows of 'face'" : "after 0 of 2 rows of 'face'"));
   }
   EXPECT_THAT(warnings_of(read_content("a.ply", header("ascii", vertices(1, kXyz) + face) + "1 2 3\n3 0 0 0\n")),
               HasSubstr("after 1 of 2 rows of 'face'"));
@@ -261,7 +265,8 @@ TEST(PlyReader, BadHeaders) {
       {"ply\nformat ascii 2.0\nend_header\n", "line 2: PLY version '2.0'"},
       {"ply\nformat middle 1.0\nend_header\n", "line 2: PLY format 'middle'"},
       {"ply\nelement vertex 1\n" + kXyz + "end_header\n1 2 3\n", "without a line 'format'"},
-      {header("ascii", vertices(1, kXyz + "property long n\n")), "line 7: unknown property type 'long' in element 'vertex'"},
+      {header("ascii", vertices(1, kXyz + "property long n\n")),
+       "line 7: unknown property type 'long' in element 'vertex'"},
       {header("ascii", "element vertex -1\n" + kXyz), "line 3: '-1' is not the number of elements 'vertex'"},
       {header("ascii", "element vertex 1e3\n" + kXyz), "line 3: '1e3'"},
       {header("ascii", "property float x\n"), "line 3: a property before any element"},

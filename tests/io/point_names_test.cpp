@@ -24,8 +24,11 @@ TEST(PointNames, SynonymsAndSpellings) {
                               {"Position.X", "Position.Y", "Position.Z"},
                               {"Points:0x", "Points:0y", "Points:0z", "X", "Y", "Z"}};
   for (const Names& names : kPositions) EXPECT_TRUE(find_point_names(names).position) << names[0];
-  const Names kColors[] = {{"red", "green", "blue"}, {"Red", "Green", "Blue"},       {"R", "G", "B"},
-                           {"Rf", "Gf", "Bf"},       {"diffuse_red", "diffuse_green", "diffuse_blue"},
+  const Names kColors[] = {{"red", "green", "blue"},
+                           {"Red", "Green", "Blue"},
+                           {"R", "G", "B"},
+                           {"Rf", "Gf", "Bf"},
+                           {"diffuse_red", "diffuse_green", "diffuse_blue"},
                            {"color_r", "color_g", "color_b"}};
   for (const Names& names : kColors) EXPECT_TRUE(find_point_names(names).color) << names[0];
 }
@@ -40,7 +43,8 @@ TEST(PointNames, TakesWhatIsThereInAnyOrder) {
 }
 
 TEST(PointNames, OtherNamesAreNone) {
-  for (const Names& names : {Names{"nx", "ny", "nz"}, Names{"a", "b", "c"}, Names{"x", "y"}, Names{"id", "time", "range"}}) {
+  for (const Names& names :
+       {Names{"nx", "ny", "nz"}, Names{"a", "b", "c"}, Names{"x", "y"}, Names{"id", "time", "range"}}) {
     EXPECT_FALSE(find_point_names(names).position) << names[0];
   }
   EXPECT_EQ(find_point_names(Names{"x", "y", "z", "red", "blue"}).n_color_channels, 2U);

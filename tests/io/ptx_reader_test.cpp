@@ -53,8 +53,8 @@ TEST(PtxReader, ReadsEveryScan) {
 }
 
 TEST(PtxReader, EveryLineEndAndABlankLineBetweenScans) {
-  const std::string unix_ends = scan("1\n1", "0 0 0", kIdentity, "4 5 6 0.5\n") + "\n" +
-                                scan("1\n1", "0 0 0", kIdentity, "7 8 9 0.5\n");
+  const std::string unix_ends =
+      scan("1\n1", "0 0 0", kIdentity, "4 5 6 0.5\n") + "\n" + scan("1\n1", "0 0 0", kIdentity, "7 8 9 0.5\n");
   std::string crlf;
   for (const char c : unix_ends) crlf += c == '\n' ? "\r\n" : std::string(1, c);
   EXPECT_EQ(read_content("a.txt", unix_ends).info.finite_points, 2U);
@@ -71,12 +71,11 @@ TEST(PtxReader, FewerRowsThanTheGridAreReadAndBothCountsSaid) {
   for (const char* counts : {"5\n3", "100000\n100000"}) {
     const auto file = read_content("a.ptx", scan(counts, "0 0 0", kIdentity, "1 2 3 0.5\n4 5 6 0.5\n"));
     EXPECT_EQ(file.info.finite_points, 2U);
-    EXPECT_THAT(all_warnings(file),
-                AllOf(HasSubstr("2 rows"), HasSubstr(counts[0] == '5' ? "15" : "10000000000")));
+    EXPECT_THAT(all_warnings(file), AllOf(HasSubstr("2 rows"), HasSubstr(counts[0] == '5' ? "15" : "10000000000")));
   }
   // In the first of two scans: the next header ends it.
-  const auto file = read_content("a.ptx", scan("2\n2", "0 0 0", kIdentity, "1 2 3 0.5\n") +
-                                              scan("1\n1", "0 0 0", kIdentity, "4 5 6 0.5\n"));
+  const auto file = read_content(
+      "a.ptx", scan("2\n2", "0 0 0", kIdentity, "1 2 3 0.5\n") + scan("1\n1", "0 0 0", kIdentity, "4 5 6 0.5\n"));
   EXPECT_EQ(file.info.finite_points, 2U);
   EXPECT_THAT(all_warnings(file), AllOf(HasSubstr("scan 1 holds 1 rows"), HasSubstr("the 4 of its grid")));
 }

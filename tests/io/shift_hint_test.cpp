@@ -5,17 +5,18 @@
 namespace cmap {
 namespace {
 
+using cmap::testing::TempFolder;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
-using cmap::testing::TempFolder;
 
 const Eigen::Vector3d kShift{651000.5, 6861000, 35.25};
 
 TEST(ShiftHint, OfACommentInAPly) {
   const TempFolder folder;
-  const auto hints = find_shift_hints(folder.write(
-      "map.ply", "ply\nformat ascii 1.0\ncomment made by us\ncomment IGN offset Pos 651000.5 6861000 35.25\n"
-                 "element vertex 1\nproperty float x\nend_header\ncomment offset 1 2 3\n"));
+  const auto hints = find_shift_hints(
+      folder.write("map.ply",
+                   "ply\nformat ascii 1.0\ncomment made by us\ncomment IGN offset Pos 651000.5 6861000 35.25\n"
+                   "element vertex 1\nproperty float x\nend_header\ncomment offset 1 2 3\n"));
   ASSERT_THAT(hints, SizeIs(1));
   EXPECT_EQ(hints[0].shift_m, kShift);
   EXPECT_EQ(hints[0].where, "the comment 'IGN offset Pos 651000.5 6861000 35.25' of map.ply");
@@ -34,8 +35,9 @@ TEST(ShiftHint, OfOtherComments) {
 }
 
 TEST(ShiftHint, IsNoneOfOtherLines) {
-  for (const char* text : {"", "# offset\n", "# offset 1 2\n", "# offset 1 2 3 4\n", "# offset nan inf 3\n", "offset 1 2 3\n",
-                           "ply\ncomment Generated 1 2 3\nend_header\n", "DATA ascii\n# offset 1 2 3\n"}) {
+  for (const char* text :
+       {"", "# offset\n", "# offset 1 2\n", "# offset 1 2 3 4\n", "# offset nan inf 3\n", "offset 1 2 3\n",
+        "ply\ncomment Generated 1 2 3\nend_header\n", "DATA ascii\n# offset 1 2 3\n"}) {
     const TempFolder folder;
     EXPECT_THAT(find_shift_hints(folder.write("map.txt", text)), SizeIs(0)) << text;
   }
@@ -74,7 +76,8 @@ TEST(ShiftHint, OfOpenSfmTwoFoldersAbove) {
   EXPECT_NEAR(hints[0].shift_m.y(), 4982950.400, 1e-3);
   EXPECT_EQ(hints[0].shift_m.z(), 120.5);
   EXPECT_TRUE(hints[0].is_approximate);
-  for (const char* broken : {"", "[1, 2]", "{\"latitude\": 45.0}", R"({"latitude": 95, "longitude": 9, "altitude": 1})"}) {
+  for (const char* broken :
+       {"", "[1, 2]", "{\"latitude\": 45.0}", R"({"latitude": 95, "longitude": 9, "altitude": 1})"}) {
     folder.write("reference_lla.json", broken);
     EXPECT_THAT(find_shift_hints(folder / "undistorted/depthmaps/merged.ply"), SizeIs(0)) << broken;
   }
@@ -92,8 +95,10 @@ TEST(Utm, IsThatOfOtherFormulas) {
   struct Place {
     double latitude_deg, longitude_deg, east_m, north_m;
   };
-  for (const Place& p : {Place{45, 9, 500000.0, 4982950.4002}, {48.8583, 2.2945, 448251.8983, 5411943.7938},
-                         {-33.8568, 151.2153, 334900.5697, 6252288.7529}, {52.52, 13.405, 391779.2593, 5820072.1592}}) {
+  for (const Place& p : {Place{45, 9, 500000.0, 4982950.4002},
+                         {48.8583, 2.2945, 448251.8983, 5411943.7938},
+                         {-33.8568, 151.2153, 334900.5697, 6252288.7529},
+                         {52.52, 13.405, 391779.2593, 5820072.1592}}) {
     const Eigen::Vector2d utm = utm_of(p.latitude_deg, p.longitude_deg);
     EXPECT_NEAR(utm.x(), p.east_m, 1e-3);
     EXPECT_NEAR(utm.y(), p.north_m, 1e-3);

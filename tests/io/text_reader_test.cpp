@@ -79,7 +79,8 @@ TEST(TextReader, RowNamesWithoutANameOfTheirOwn) {
 }
 
 TEST(TextReader, ColumnsNotUsedAreSaid) {
-  EXPECT_THAT(all_notes(read_content("a.csv", "x,y,z,intensity,time\n1,2,3,4,5\n")), HasSubstr("not used: intensity, time"));
+  EXPECT_THAT(all_notes(read_content("a.csv", "x,y,z,intensity,time\n1,2,3,4,5\n")),
+              HasSubstr("not used: intensity, time"));
 }
 
 TEST(TextReader, DecimalCommas) {
@@ -123,7 +124,8 @@ TEST(TextReader, WhatNoSensorMeasuredIsLeftOutAndCounted) {
   ASSERT_EQ(file.cloud.size(), 40U);
   EXPECT_EQ(point(file, 39), Eigen::Vector3d(600039, 2, 3));
   EXPECT_GT(file.cloud.origin.x(), 5e5) << "points at 0 0 0 do not choose the origin";
-  EXPECT_THAT(all_notes(file), ::testing::AllOf(HasSubstr("3 of 83 points left out"), HasSubstr("40 of 83 points left out")));
+  EXPECT_THAT(all_notes(file),
+              ::testing::AllOf(HasSubstr("3 of 83 points left out"), HasSubstr("40 of 83 points left out")));
   // One point at zero is a point like any other, but a map far away keeps its digits beside it.
   EXPECT_EQ(read_content("a.xyz", "0 0 0\n1 2 3\n").cloud.size(), 2U);
   const auto far = read_content("a.xyz", "0 0 0\n500000.123 4600000.456 100.5\n500001.125 4600002.25 101\n");

@@ -25,7 +25,9 @@ NumberTable table_of(std::size_t rows, Rest&& rest) {
 
 using Values = std::vector<double>;
 
-Values color(std::size_t i) { return {static_cast<double>(i * 37 % 256), static_cast<double>(i * 91 % 256), static_cast<double>(i * 53 % 256)}; }
+Values color(std::size_t i) {
+  return {static_cast<double>(i * 37 % 256), static_cast<double>(i * 91 % 256), static_cast<double>(i * 53 % 256)};
+}
 
 /// Unit vectors around the compass, most of them with a negative part.
 Values normal(std::size_t i) {
@@ -77,16 +79,20 @@ TEST(UnnamedColumns, OneNumberBesideTheColor) {
 }
 
 TEST(UnnamedColumns, IntensityRingAndTimeAreNoColor) {
-  EXPECT_EQ(decide(table_of(50, [](std::size_t i) {
-              const auto t = static_cast<double>(i);
-              return Values{std::floor(t / 2), static_cast<double>(i % 16), 0.01 * t};
-            })),
+  EXPECT_EQ(decide(table_of(50,
+                            [](std::size_t i) {
+                              const auto t = static_cast<double>(i);
+                              return Values{std::floor(t / 2), static_cast<double>(i % 16), 0.01 * t};
+                            })),
             std::nullopt);
 }
 
 /// Channels of one value throughout say nothing.
 TEST(UnnamedColumns, ColorsInOneChannel) {
-  EXPECT_EQ(decide(table_of(50, [](std::size_t i) { return Values{static_cast<double>(i) + 0.5, 255, 0}; })),
+  EXPECT_EQ(decide(table_of(50,
+                            [](std::size_t i) {
+                              return Values{static_cast<double>(i) + 0.5, 255, 0};
+                            })),
             (ColumnTriple{3, 4, 5}));
 }
 

@@ -286,7 +286,8 @@ TEST(ScaleVoting, RefusesWrongArguments) {
   ScaleVotingOptions options;
   options.least_tolerance = 1.0;
   EXPECT_THROW(vote_scales(sessions_of({1, 2}), equal_units(2), options), UsageError);
-  EXPECT_EQ(test::refusal_of<UnsupportedError>([&] { vote_scales({}, {}); }), "no session has a baseline: the scale is not determined");
+  EXPECT_EQ(test::refusal_of<UnsupportedError>([&] { vote_scales({}, {}); }),
+            "no session has a baseline: the scale is not determined");
 }
 
 }  // namespace

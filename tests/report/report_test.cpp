@@ -136,7 +136,8 @@ TEST(Report, WarnsOfGrayBesideColor) {
   InputDescription gray = described("est.ply", kEstimate);
   gray.file.gray_colors = true;
   const auto ids = [&](const InputDescription& reference, const InputDescription& estimate) {
-    const Json report = make_report(reference, estimate, evaluate(kReference, kEstimate, options_for({"chamfer"})), test::a_run());
+    const Json report =
+        make_report(reference, estimate, evaluate(kReference, kEstimate, options_for({"chamfer"})), test::a_run());
     std::string all;
     for (const Json& warning : report.at("warnings")) all += warning.at("id").get<std::string>() + " ";
     return all;

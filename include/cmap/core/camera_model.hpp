@@ -22,8 +22,8 @@ struct CameraModel {
   std::vector<double> distortion;
 };
 
-/// Throws UsageError naming field, value and rule: sizes and focal lengths positive, all finite, 0, 4, 5 or 8 numbers of
-/// pinhole distortion, 0 or 4 of fisheye. The functions below take a camera that passes.
+/// Throws UsageError naming field, value and rule: sizes and focal lengths positive, all finite, 0, 4, 5 or 8 numbers
+/// of pinhole distortion, 0 or 4 of fisheye. The functions below take a camera that passes.
 void check(const CameraModel& camera);
 
 /// Pixel of a point in the camera frame; none behind the camera (pinhole: z <= 0; fisheye: the backward axis itself) or

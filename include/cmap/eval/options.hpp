@@ -54,8 +54,8 @@ struct EvaluationOptions {
   double sensitivity_translation_m = 0.01;
   double sensitivity_rotation_deg = 0.1;
   IndexKind index = IndexKind::kBvh;
-  bool keep_noise = false;             ///< LAS: of classes 7 and 18
-  std::vector<std::uint8_t> classes;   ///< LAS: these only; empty: all
+  bool keep_noise = false;            ///< LAS: of classes 7 and 18
+  std::vector<std::uint8_t> classes;  ///< LAS: these only; empty: all
 };
 
 /// What of it decides how files are read.

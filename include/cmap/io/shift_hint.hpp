@@ -10,8 +10,8 @@ namespace cmap {
 /// A shift between a map's coordinates and those of its surroundings that is written down somewhere; never applied by a
 /// reader.
 struct ShiftHint {
-  Eigen::Vector3d shift_m;    ///< added to the stored coordinates; comments also mean its negative
-  std::string where;          ///< "the comment 'IGN offset Pos 1 2 3' of map.ply", "map_offset.xyz"
+  Eigen::Vector3d shift_m;      ///< added to the stored coordinates; comments also mean its negative
+  std::string where;            ///< "the comment 'IGN offset Pos 1 2 3' of map.ply", "map_offset.xyz"
   bool is_approximate = false;  ///< a place on the globe, whose north and scale are not those of a projection
 };
 

@@ -27,9 +27,9 @@ inline constexpr std::array<RecallClassLook, 4> kRecallClassLooks{{{"not covered
 inline const RecallClassLook& look_of(RecallClass c) { return kRecallClassLooks[static_cast<std::size_t>(c)]; }
 
 struct LocalColorRecallOptions {
-  double tau = 0.1;       ///< a color is right within 3 tau (unit RGB)
-  double radius_m = 0.5;  ///< r_g
-  bool curve = false;     ///< also for tau = 0.02, 0.04 ... 0.30
+  double tau = 0.1;                       ///< a color is right within 3 tau (unit RGB)
+  double radius_m = 0.5;                  ///< r_g
+  bool curve = false;                     ///< also for tau = 0.02, 0.04 ... 0.30
   double radius_steps = kThresholdSteps;  ///< that a distance may exceed the radius by (spatial/threshold.hpp)
 };
 

@@ -136,7 +136,8 @@ Json Runner::key_for(const std::string& reference, const std::string& estimate) 
 }
 
 Evaluated Runner::evaluate_files(const std::string& reference_path, const std::string& estimate_path) const {
-  auto [reference, estimate] = read_both(file(reference_path), file(estimate_path), read_options(manifest_.options, true));
+  auto [reference, estimate] =
+      read_both(file(reference_path), file(estimate_path), read_options(manifest_.options, true));
   reference.info.path = reference_path;  // as in the manifest
   estimate.info.path = estimate_path;
   const InputDescription about_reference = describe(reference), about_estimate = describe(estimate);
