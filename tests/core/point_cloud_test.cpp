@@ -261,6 +261,23 @@ TEST(Transformed, KeepsEveryColorType) {
   }
 }
 
+TEST(Transformed, AStrayDoesNotTakeTheDigitsOfTheOthers) {
+  PointCloud cloud = random_cloud(50, Vector3d::Zero(), 10.0, 4);
+  cloud.positions.push_back({1e8f, 0, 0});
+  const PointCloud moved = transformed(cloud, similarity(1.0, Eigen::AngleAxisd::Identity(), kUtm));
+  EXPECT_EQ(moved.origin, kUtm);
+  for (std::size_t i = 0; i < 50; ++i) ASSERT_LT((moved.world(i) - kUtm - cloud.world(i)).norm(), 1e-9);
+}
+
+TEST(FileStep, GoesWithTheCloud) {
+  PointCloud cloud = four_points();
+  cloud.file_step_m = 0.01;
+  EXPECT_EQ(select(cloud, {1, 1, 0, 0}).file_step_m, 0.01);
+  EXPECT_EQ(crop(cloud, bounds(cloud)).file_step_m, 0.01);
+  const Eigen::AngleAxisd turn(0.3, Vector3d::UnitX());
+  EXPECT_NEAR(transformed(cloud, similarity(2.0, turn, kUtm)).file_step_m, 0.02, 1e-15);
+}
+
 TEST(Transformed, OfNothingIsEmptyButStillColored) {
   PointCloud empty;
   empty.colors.emplace<Array<RgbF>>();

@@ -44,6 +44,13 @@ TEST(LasReader, EqualsTheDoublePlyOfItsCoordinates) {
   expect_same_cloud(from_las.cloud, read_content("a.ply", ply.str()).cloud);
 }
 
+TEST(LasReader, TheFilesStepIsItsCoarsestScale) {
+  EXPECT_EQ(read_content("a.las", Las{.scale = {0.001, 0.01, 0.0001}}.file().str()).cloud.file_step_m, 0.01);
+  EXPECT_EQ(read_content("a.las", Las{.scale = {0.001, -0.25, 0.001}}.file().str()).cloud.file_step_m, 0.25);
+  const Las feet{.scale = {0.01, 0.01, 0.01}, .records = {geo_keys_record({{3076, 0, 1, 9002}, {4099, 0, 1, 9002}})}};
+  EXPECT_NEAR(read_content("a.las", feet.file().str()).cloud.file_step_m, 0.003048, 1e-15);
+}
+
 TEST(LasReader, EightBitColorsInSixteenBitFields) {
   Las las{.points = {{1, 2, 3}, {4, 5, 6}}, .colors = {{0, 128, 255}, {1, 2, 3}}};
   auto file = read_content("a.las", las.file().str());

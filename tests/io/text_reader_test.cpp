@@ -126,11 +126,18 @@ TEST(TextReader, WhatNoSensorMeasuredIsLeftOutAndCounted) {
   EXPECT_GT(file.cloud.origin.x(), 5e5) << "points at 0 0 0 do not choose the origin";
   EXPECT_THAT(all_notes(file),
               ::testing::AllOf(HasSubstr("3 of 83 points left out"), HasSubstr("40 of 83 points left out")));
-  // One point at zero is a point like any other, but a map far away keeps its digits beside it.
+}
+
+TEST(TextReader, AFewFarPointsDoNotTakeTheDigitsOfTheOthers) {
   EXPECT_EQ(read_content("a.xyz", "0 0 0\n1 2 3\n").cloud.size(), 2U);
-  const auto far = read_content("a.xyz", "0 0 0\n500000.123 4600000.456 100.5\n500001.125 4600002.25 101\n");
-  ASSERT_EQ(far.cloud.size(), 3U);
-  EXPECT_LT((point(far, 1) - Eigen::Vector3d(500000.123, 4600000.456, 100.5)).norm(), 1e-4);
+  std::string text;
+  for (int i = 0; i < 20; ++i) text += fmt::format("50000{}.123 46000{:02}.456 100.5\n", i % 10, i);
+  for (const char* stray : {"0 0 0\n", "5e8 0 0\n", "500000 4600000 -9e7\n"}) {
+    const auto far = read_content("a.xyz", stray + text);
+    ASSERT_EQ(far.cloud.size(), 21U);
+    EXPECT_LT((point(far, 1) - Eigen::Vector3d(500000.123, 4600000.456, 100.5)).norm(), 1e-5) << stray;
+    EXPECT_LT((point(far, 20) - Eigen::Vector3d(500009.123, 4600019.456, 100.5)).norm(), 1e-5) << stray;
+  }
 }
 
 TEST(TextReader, DoesNotDependOnTheLocale) {
