@@ -192,8 +192,6 @@ void CloudBuilder::describe(FileInfo& info) {
     const bool any_left_out = !info.left_out.empty();
     source_.fail("none of its {} points is {}{}", seen_, any_left_out ? "left" : "finite", reasons);
   }
-  const std::uint64_t not_finite = seen_ - kept_ - info.n_left_out();
-  if (not_finite > 0) info.notes.push_back(fmt::format("{} of {} points dropped: not finite", not_finite, seen_));
   for (const LeftOut& points : info.left_out) {
     info.notes.push_back(fmt::format("{} of {} points left out: {}", points.n, seen_, points.reason));
   }

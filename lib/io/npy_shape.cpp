@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 
+#include "io/rotation_check.hpp"
+
 namespace cmap {
 namespace {
 
@@ -33,11 +35,9 @@ std::vector<Matrix> matrices_of(const NpyArray& array, Eigen::Index rows, Eigen:
 
 /// A rotation (and scale) in the first three rows and columns.
 bool is_rotation(const Matrix& matrix) {
-  constexpr double kTolerance = 1e-3;
-  const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>();
-  const double sq_scale = R.col(0).squaredNorm();
-  return R.allFinite() && sq_scale > 0.0 &&
-         (R.transpose() * R / sq_scale - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < kTolerance;
+  const Eigen::Matrix3d block = matrix.topLeftCorner<3, 3>();
+  const double scale = block.row(0).norm();
+  return scale > 0.0 && deviation_from_rotation(block / scale) <= kRotationTolerance;
 }
 
 constexpr double kUnitRowTolerance = 1e-6;

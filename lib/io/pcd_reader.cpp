@@ -36,10 +36,7 @@ void check_bytes_left_over(ByteSource& source, std::uint64_t points, FileInfo& i
                         [](std::byte b) { return b == std::byte{0} || b == std::byte{'\n'} || b == std::byte{'\r'}; });
     source.advance(bytes.size());
   }
-  if (!empty) {
-    const std::string each = n % points == 0 ? fmt::format(", exactly {} a point", n / points) : "";
-    source.fail("{} bytes are left over after all that the header says{}; the points would be read shifted", n, each);
-  }
+  if (!empty) refuse_bytes_left_over(source, n, points);
   if (n > 2) info.notes.push_back(fmt::format("{} bytes of nothing follow the points; not read", n));
 }
 

@@ -6,6 +6,7 @@
 #include "io/number_text.hpp"
 #include "io/ply_rows.hpp"
 #include "io/point_names.hpp"
+#include "io/record_reader.hpp"
 
 namespace cmap {
 namespace {
@@ -99,12 +100,7 @@ void check_bytes_left_over(ByteSource& source, const PlyHeader& header, FileInfo
   const bool fixed = std::none_of(header.elements.begin(), header.elements.end(),
                                   [](const PlyElement& element) { return element.count > 0 && element.has_lists(); });
   const PlyElement& vertex = header.elements[header.vertex];
-  if (fixed) {
-    const std::string each =
-        n % vertex.count == 0 ? fmt::format(", exactly {} a point: the header leaves out a property", n / vertex.count)
-                              : "";
-    source.fail("{} bytes are left over after all that the header says{}; the points would be read shifted", n, each);
-  }
+  if (fixed) refuse_bytes_left_over(source, n, vertex.count);
   info.notes.push_back(fmt::format("{} bytes are left over after all that the header says; not read", n));
 }
 

@@ -41,6 +41,15 @@ PointColumns columns_at(const RecordLayout& layout, const std::byte* data) {
   return columns;
 }
 
+void refuse_bytes_left_over(const ByteSource& source, std::uint64_t n_bytes, std::uint64_t n_points) {
+  const std::string each =
+      n_points > 0 && n_bytes % n_points == 0
+          ? fmt::format(", exactly {} a point, of which the header does not tell", n_bytes / n_points)
+          : "";
+  source.fail("{} bytes are left over after all that the header says{}; the points would be read shifted", n_bytes,
+              each);
+}
+
 void read_records(ByteSource& source, std::uint64_t n, const RecordLayout& layout, CloudBuilder& builder) {
   for_each_block(source, n, layout.bytes,
                  [&](const std::byte* data, std::size_t count) { builder.append(columns_at(layout, data), count); });

@@ -24,6 +24,10 @@ RecordLayout record_layout(const ByteSource& source, std::span<const Field> fiel
 void require_records(const ByteSource& source, std::uint64_t n, std::size_t record_bytes);
 void read_records(ByteSource& source, std::uint64_t n, const RecordLayout& layout, CloudBuilder& builder);
 
+/// Refuses a binary file that holds more bytes than its header says: with a size of records that is wrong, all but the
+/// first point would be read shifted.
+[[noreturn]] void refuse_bytes_left_over(const ByteSource& source, std::uint64_t n_bytes, std::uint64_t n_points);
+
 /// The columns of the records that start at `data`.
 PointColumns columns_at(const RecordLayout& layout, const std::byte* data);
 
