@@ -93,7 +93,7 @@ void warn_of_singletons(const EvaluationOptions& o, const ColorConsistency& c, s
                                                                  : "they count as 0, which is perfect";
   warnings.push_back(
       {"color_consistency_sparse",
-       fmt::format("{} of the estimate's {} voxels of {} m hold a single point or copies of one: {}; a larger "
+       fmt::format("{} of the evaluated map's {} voxels of {} m hold a single point or copies of one: {}; a larger "
                    "ccs-voxel says more of so sparse a map",
                    n_single, c.n_occupied, o.ccs_voxel_m, counted)});
 }
@@ -174,14 +174,14 @@ Json psnr_fields(const Findings& f) {
 Json color_consistency_fields(const EvaluationOptions& o, const IndexedMap& map, std::vector<Warning>& warnings) {
   const ColorConsistency consistency = consistency_of(o, map);
   if (o.ccs_singletons == Singletons::kRefuse && consistency.n_singletons > 0) {
-    throw UnsupportedError(fmt::format(
-        "ccs-singletons: {} of the estimate's {} voxels of {} m hold a single point; zero or exclude says what they "
-        "count as",
-        consistency.n_singletons, consistency.n_occupied, o.ccs_voxel_m));
+    throw UnsupportedError(
+        fmt::format("ccs-singletons: {} of the evaluated map's {} voxels of {} m hold a single point; zero or exclude "
+                    "says what they count as",
+                    consistency.n_singletons, consistency.n_occupied, o.ccs_voxel_m));
   }
   if (consistency.n_voxels(o.ccs_singletons) == 0) {
     warnings.push_back({"color_consistency_no_voxels",
-                        fmt::format("no {} m voxel of the estimate holds {} points: no color consistency",
+                        fmt::format("no {} m voxel of the evaluated map holds {} points: no color consistency",
                                     o.ccs_voxel_m, o.ccs_min_points)});
   }
   warn_of_singletons(o, consistency, warnings);

@@ -19,7 +19,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 [[noreturn]] void refuse(const char* name, const Json& value, const char* rule) {
-  throw UsageError(fmt::format("{}: {} {}", name, value.dump(), rule));
+  // The command line holds whole numbers as floating-point ones: 300, not 300.0.
+  const std::string shown = value.is_number_float() ? fmt::format("{}", value.get<double>()) : value.dump();
+  throw UsageError(fmt::format("{}: {} {}", name, shown, rule));
 }
 
 double number(const char* name, const Json& value) {

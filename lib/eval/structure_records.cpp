@@ -40,7 +40,7 @@ Json entropy_numbers(const EvaluationOptions& options, const NeighborhoodShape& 
 Warning why_no_entropy(const EvaluationOptions& options, std::uint64_t n_flat) {
   if (n_flat == 0) {
     return {"mean_map_entropy_no_points",
-            fmt::format("no point of the estimate has {} neighbors within {} m: no mean map entropy",
+            fmt::format("no point of the evaluated map has {} neighbors within {} m: no mean map entropy",
                         options.mme_min_neighbors, options.mme_radius_m)};
   }
   return {"mean_map_entropy_flat",

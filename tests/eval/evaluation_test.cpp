@@ -304,7 +304,7 @@ TEST(Evaluation, SingletonsCanBeRefused) {
   EvaluationOptions options = options_for({"CCS"});
   options.ccs_singletons = Singletons::kRefuse;
   EXPECT_THAT(refusal_of<UnsupportedError>([&] { evaluate(kSpotMap, kSpotMap, options); }),
-              HasSubstr("ccs-singletons: 1 of the estimate's 3 voxels of 0.1 m hold a single point"));
+              HasSubstr("ccs-singletons: 1 of the evaluated map's 3 voxels of 0.1 m hold a single point"));
   const PointCloud whole = small_map({kSpots.begin(), kSpots.end() - 1}, {kSpotColors.begin(), kSpotColors.end() - 1});
   const Evaluation found = evaluate(kSpotMap, whole, options);
   EXPECT_DOUBLE_EQ(fields(found, "color_consistency").at("value").get<double>(), 0.02);
@@ -315,14 +315,14 @@ TEST(Evaluation, AMapOfOnePointAVoxelIsWarnedOf) {
   const PointCloud map = gray_map(apart);
   const Evaluation found = evaluate(map, map, options_for({"CCS"}));
   ASSERT_THAT(warning_ids(found.warnings), ElementsAre("color_consistency_sparse"));
-  EXPECT_THAT(found.warnings[0].message, HasSubstr("3 of the estimate's 4 voxels of 0.1 m"));
+  EXPECT_THAT(found.warnings[0].message, HasSubstr("3 of the evaluated map's 4 voxels of 0.1 m"));
   // The same points three times each.
   std::vector<Eigen::Vector3f> copies = apart;
   for (int copy = 1; copy < 3; ++copy) copies.insert(copies.end(), apart.begin(), apart.end());
   const Evaluation copied = evaluate(map, gray_map(copies), options_for({"CCS"}));
   EXPECT_EQ(fields(copied, "color_consistency").at("n_singletons"), 0);
   ASSERT_THAT(warning_ids(copied.warnings), ElementsAre("color_consistency_sparse"));
-  EXPECT_THAT(copied.warnings[0].message, HasSubstr("3 of the estimate's 4 voxels of 0.1 m"));
+  EXPECT_THAT(copied.warnings[0].message, HasSubstr("3 of the evaluated map's 4 voxels of 0.1 m"));
 }
 
 /// Voxel centers a tenth of a meter apart, as typed; every option that is a threshold at a tenth.
