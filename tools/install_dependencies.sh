@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
 # Installs the Debian and Ubuntu packages that cmap is built from, as far as they are missing.
-# Usage: tools/install_dependencies.sh [--tests] [--benchmarks]
+# Usage: tools/install_dependencies.sh [--all] [--tests] [--benchmarks]
+#   (nothing)      what cmap_eval, cmap_align, cmap_compare and cmap_leaderboard need
+#   --all          also what pictures, global registration, cmap_simulate and cmap_recon need
 #   --tests        also what the tests need: GoogleTest, Python, ffmpeg, node and npm, a browser, OpenGL in software
 #   --benchmarks   also what the speed benchmarks need: Google Benchmark and the libraries compared with
 set -euo pipefail
@@ -10,11 +12,13 @@ packages=(
   g++ cmake ninja-build
   libeigen3-dev libfmt-dev libtbb-dev libssl-dev nlohmann-json3-dev libcli11-dev
   zlib1g-dev liblzf-dev liblz4-dev libflann-dev
-  libvtk9-dev libopencv-imgproc-dev libopencv-imgcodecs-dev fonts-dejavu-core
-  libegl-dev libgl-dev libx11-dev libpcl-dev libembree-dev libceres-dev
 )
 for argument in "$@"; do
   case "$argument" in
+    --all)
+      packages+=(libvtk9-dev libopencv-imgproc-dev libopencv-imgcodecs-dev fonts-dejavu-core
+        libegl-dev libgl-dev libx11-dev libpcl-dev libembree-dev libceres-dev)
+      ;;
     --tests)
       packages+=(libgtest-dev libgmock-dev python3 python3-numpy python3-scipy python3-jsonschema libopencv-calib3d-dev ffmpeg chromium
         libgl1-mesa-dri libegl-mesa0 xvfb xdotool)

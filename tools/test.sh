@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-tools/install_dependencies.sh --tests
+tools/install_dependencies.sh --all --tests
 echo "Configuring build/release"
 tools/quietly.sh cmake --preset release -DCMAP_BUILD_WEB=ON
 echo "Building build/release"

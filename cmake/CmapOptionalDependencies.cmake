@@ -1,0 +1,54 @@
+# What figures, photographs, OpenGL, global registration, the simulator and pose graphs need; sets CMAP_WITH_* where all of it is
+# there.
+
+# PCL, a peer in the benchmarks, uses more of VTK than figures do: whoever comes first decides in which folder VTK's
+# targets live, and all of them must live here.
+if(CMAP_BUILD_BENCHMARKS)
+  find_package(PCL QUIET COMPONENTS kdtree io registration filters)
+endif()
+
+# Figures: optional. VTK's OpenGL and windows are for module gl alone.
+find_package(VTK 9.1 QUIET COMPONENTS CommonDataModel IOImage RenderingCore RenderingFreeType
+  OPTIONAL_COMPONENTS InteractionStyle RenderingOpenGL2 RenderingUI glew)
+find_package(OpenGL QUIET COMPONENTS EGL GLX)
+find_package(X11 QUIET)
+find_path(CMAP_OPENCV_INCLUDE_DIR opencv2/imgproc.hpp PATH_SUFFIXES opencv4)
+find_library(CMAP_OPENCV_CORE_LIBRARY opencv_core)
+find_library(CMAP_OPENCV_IMGPROC_LIBRARY opencv_imgproc)
+if(VTK_FOUND AND CMAP_OPENCV_INCLUDE_DIR AND CMAP_OPENCV_CORE_LIBRARY AND CMAP_OPENCV_IMGPROC_LIBRARY)
+  set(CMAP_WITH_RENDER ON)
+endif()
+if(CMAP_WITH_RENDER AND TARGET VTK::RenderingOpenGL2 AND TARGET VTK::RenderingUI AND TARGET VTK::InteractionStyle AND TARGET VTK::glew
+   AND TARGET OpenGL::EGL AND TARGET OpenGL::GLX AND TARGET X11::X11)
+  set(CMAP_WITH_GL ON)
+endif()
+
+# Photographs of a capture: optional.
+find_library(CMAP_OPENCV_IMGCODECS_LIBRARY opencv_imgcodecs)
+if(CMAP_OPENCV_INCLUDE_DIR AND CMAP_OPENCV_CORE_LIBRARY AND CMAP_OPENCV_IMGPROC_LIBRARY AND CMAP_OPENCV_IMGCODECS_LIBRARY)
+  set(CMAP_WITH_IMAGES ON)
+endif()
+
+# Global registration: optional. PCL's own CMake files would bring in VTK and all its other modules.
+find_path(CMAP_PCL_INCLUDE_DIR pcl/features/fpfh_omp.h PATH_SUFFIXES pcl-1.15 pcl-1.14 pcl-1.13 pcl-1.12)
+set(CMAP_PCL_LIBRARIES)
+set(CMAP_WITH_PCL ON)
+foreach(module features search kdtree octree common)
+  find_library(CMAP_PCL_${module}_LIBRARY pcl_${module})
+  list(APPEND CMAP_PCL_LIBRARIES ${CMAP_PCL_${module}_LIBRARY})
+  if(NOT CMAP_PCL_INCLUDE_DIR OR NOT CMAP_PCL_${module}_LIBRARY)
+    set(CMAP_WITH_PCL OFF)
+  endif()
+endforeach()
+
+# The simulator: optional. Embree casts its rays; it writes photographs.
+find_package(embree 3 QUIET)
+if(embree_FOUND AND CMAP_WITH_IMAGES)
+  set(CMAP_WITH_SIM ON)
+endif()
+
+# Pose graphs: optional.
+find_package(Ceres 2.1 QUIET)
+if(Ceres_FOUND)
+  set(CMAP_WITH_CERES ON)
+endif()
