@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws text from standard input as an SVG terminal: cmap_eval REF EST | docs/table_svg.py > docs/cmap_eval.svg"""
+"""Draws text from standard input as an SVG terminal: cmap_eval REF EST | sed "/^warnings/,$d" | docs/table_svg.py > docs/cmap_eval.svg"""
 
 import html
 import sys

@@ -196,7 +196,6 @@ TEST(PlyReader, NonFinitePointsAreDroppedAndCounted) {
   const auto file = read_content("n.ply", bytes.str());
   EXPECT_EQ(file.info.points, kPoints);
   ASSERT_EQ(file.info.finite_points, kPoints - (kPoints + 2) / 3);
-  EXPECT_THAT(all_notes(file), HasSubstr("3334 of 10000 points dropped"));
   const auto& colors = std::get<Array<Rgb8>>(file.cloud.colors);
   ASSERT_EQ(colors.size(), file.cloud.size());
   for (std::size_t i = 0; i < file.cloud.size(); ++i) {
