@@ -1,5 +1,6 @@
 #include "cmap/metrics/color_consistency.hpp"
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 #include <vector>
@@ -12,11 +13,11 @@ namespace {
 
 /// Sums of a voxel's colors in 1/255 units: exact for 8-bit colors.
 struct ColorSums {
-  std::uint64_t n = 0;
+  std::uint32_t n = 0;
+  bool one_place = true;
+  Eigen::Vector3f place = Eigen::Vector3f::Zero();  ///< of the first point
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double sum_sq = 0.0;
-  Eigen::Vector3f place = Eigen::Vector3f::Zero();  ///< of the first point
-  bool one_place = true;
 
   void add(const Eigen::Vector3d& color, const Eigen::Vector3f& offset) {
     if (n == 0) place = offset;
@@ -34,53 +35,71 @@ struct ColorSums {
   }
 };
 
-struct OccupiedVoxel {
-  VoxelColorSpread spread;
-  std::uint64_t n;
-  bool one_place;
-};
-
-std::vector<OccupiedVoxel> occupied_voxels(const IndexedMap& map, double voxel_m) {
-  if (!map.has_color()) throw std::invalid_argument("color_consistency: the map needs colors");
-  const VoxelFrame frame(map.index.bounds(), voxel_m);
+/// Hands every occupied voxel to use(result, key, sums); a result for each of some parts of the map.
+template <class Result, class UseVoxel>
+std::vector<Result> fold_colors(const IndexedMap& map, const VoxelFrame& frame, UseVoxel use) {
   const auto add = [&](ColorSums& sums, std::size_t slot, const Eigen::Vector3d&, const VoxelKey&) {
     if (map.has_color_at(slot)) sums.add(map.color(slot), map.index.points.offset(slot));
   };
-  const auto finish = [&](const VoxelKey& key, const ColorSums& sums) -> std::optional<OccupiedVoxel> {
-    if (sums.n == 0) return std::nullopt;
-    return OccupiedVoxel{{frame.index(key), sums.covariance_trace()}, sums.n, sums.one_place};
+  const auto use_occupied = [&](Result& result, const VoxelKey& key, const ColorSums& sums) {
+    if (sums.n > 0) use(result, key, sums);
   };
-  return collect_voxels<ColorSums>(map.index.points, frame, add, finish);
+  return fold_voxels<Result, ColorSums>(map.index.points, frame, add, use_occupied);
 }
+
+VoxelFrame frame_of(const IndexedMap& map, double voxel_m) {
+  if (!map.has_color()) throw std::invalid_argument("color_consistency: the map needs colors");
+  return VoxelFrame(map.index.bounds(), voxel_m);
+}
+
+/// What the voxels of a part of the map add up to.
+struct PartSums {
+  std::uint64_t n_occupied = 0, n_enough = 0, n_one_place = 0;
+  double sum = 0.0, sum_of_enough = 0.0;
+  std::vector<double> traces;  ///< of voxels of at least 2 points
+
+  void add(const ColorSums& voxel, std::uint64_t min_points) {
+    ++n_occupied;
+    if (voxel.n == 1) return;
+    const double trace = voxel.covariance_trace();
+    traces.push_back(trace);
+    sum += trace;
+    if (voxel.one_place) ++n_one_place;
+    if (voxel.n < min_points) return;
+    ++n_enough;
+    sum_of_enough += trace;
+  }
+};
 
 }  // namespace
 
 std::vector<VoxelColorSpread> voxel_color_spreads(const IndexedMap& map, double voxel_m, std::uint64_t min_points,
                                                   Singletons singletons) {
-  std::vector<VoxelColorSpread> spreads;
-  for (const OccupiedVoxel& voxel : occupied_voxels(map, voxel_m)) {
-    if (singletons != Singletons::kExclude || voxel.n >= min_points) spreads.push_back(voxel.spread);
-  }
-  return spreads;
+  const VoxelFrame frame = frame_of(map, voxel_m);
+  using Spreads = std::vector<VoxelColorSpread>;
+  const auto use = [&](Spreads& spreads, const VoxelKey& key, const ColorSums& sums) {
+    if (singletons == Singletons::kExclude && sums.n < min_points) return;
+    spreads.push_back({frame.index(key), sums.covariance_trace()});
+  };
+  Spreads all;
+  for (const Spreads& part : fold_colors<Spreads>(map, frame, use)) all.insert(all.end(), part.begin(), part.end());
+  return all;
 }
 
 ColorConsistency color_consistency(const IndexedMap& map, double voxel_m, std::uint64_t min_points) {
+  const auto use = [&](PartSums& part, const VoxelKey&, const ColorSums& sums) { part.add(sums, min_points); };
   ColorConsistency consistency;
   std::vector<double> traces;
   double sum = 0.0, sum_of_enough = 0.0;
-  for (const OccupiedVoxel& voxel : occupied_voxels(map, voxel_m)) {
-    ++consistency.n_occupied;
-    sum += voxel.spread.trace;
-    if (voxel.n == 1) {
-      ++consistency.n_singletons;
-      continue;
-    }
-    traces.push_back(voxel.spread.trace);
-    if (voxel.one_place) ++consistency.n_one_place;
-    if (voxel.n < min_points) continue;
-    ++consistency.n_enough;
-    sum_of_enough += voxel.spread.trace;
+  for (const PartSums& part : fold_colors<PartSums>(map, frame_of(map, voxel_m), use)) {
+    consistency.n_occupied += part.n_occupied;
+    consistency.n_enough += part.n_enough;
+    consistency.n_one_place += part.n_one_place;
+    sum += part.sum;
+    sum_of_enough += part.sum_of_enough;
+    traces.insert(traces.end(), part.traces.begin(), part.traces.end());
   }
+  consistency.n_singletons = consistency.n_occupied - traces.size();
   consistency.zero = sum / static_cast<double>(consistency.n_occupied);
   consistency.exclude = sum_of_enough / static_cast<double>(consistency.n_enough);
   consistency.median = quantiles(traces, std::array{0.5}).front();
