@@ -52,30 +52,6 @@ double reached_by_share(std::vector<double> values) {
   return *place;
 }
 
-/// Whether all coordinates are numbers of that many bits: floats are a property of all three axes.
-bool all_of_bits(const std::array<Axis, 3>& axes, int bits) {
-  return std::ranges::all_of(axes, [&](const Axis& axis) {
-    return std::ranges::all_of(axis.world,
-                               [&](double x) { return x == 0.0 || std::fmod(x, float_step(x, bits)) == 0.0; });
-  });
-}
-
-/// Step of such floats at the axis' coordinates; 0 where it is finer than the limit, or where even multiples of it or
-/// odd ones are missing: coordinates of a raster are such numbers by chance.
-double binary_step(const Axis& axis, int bits, double limit_m) {
-  std::vector<double> steps;
-  std::size_t n_odd = 0, n_coarse = 0;
-  for (const double x : axis.world) {
-    steps.push_back(float_step(x, bits));
-    if (steps.back() <= limit_m) continue;
-    ++n_coarse;
-    n_odd += std::fmod(std::abs(x) / steps.back(), 2.0) == 1.0 ? 1U : 0U;
-  }
-  const double step_m = reached_by_share(steps);
-  const double odd_share = static_cast<double>(n_odd) / static_cast<double>(std::max<std::size_t>(n_coarse, 1));
-  return step_m > limit_m && odd_share > kShare && odd_share < 1.0 - kShare ? step_m : 0.0;
-}
-
 /// Whether all values are whole multiples of the step, as far as our own rounding lets one see.
 bool all_multiples(const Axis& axis, double step_m) {
   for (std::size_t i = 0; i < axis.world.size(); ++i) {
@@ -84,6 +60,46 @@ bool all_multiples(const Axis& axis, double step_m) {
     if (rounding_m > step_m / 8.0 || from_multiple_m > rounding_m + 1e-15 * std::abs(axis.world[i])) return false;
   }
   return true;
+}
+
+/// The coarsest power of ten of which all values are multiples, as printed numbers are; 0 where none is seen.
+double printed_step_m(const Axis& axis) {
+  for (double step_m = 1.0; step_m > 1e-7; step_m /= 10.0) {
+    if (all_multiples(axis, step_m)) return step_m;
+  }
+  return 0.0;
+}
+
+/// What an axis says of numbers of so many bits.
+struct BinaryAxis {
+  bool against = false;
+  double step_m = 0.0;  ///< of such numbers at its coordinates; 0 where it says nothing
+};
+
+/// An axis speaks for such numbers where those that are coarser than the limit are multiples of their steps, as far as
+/// printing and our own rounding let one see, both even and odd ones (coordinates of a raster are multiples by chance).
+BinaryAxis binary_axis(const Axis& axis, int bits, double limit_m) {
+  constexpr std::size_t kFewestRounded = 20;  // printed numbers are multiples by a chance of up to one in four each
+  const double printed_m = printed_step_m(axis);
+  std::vector<double> steps;
+  std::size_t n_odd = 0, n_seen = 0;
+  bool exact = true;
+  for (std::size_t i = 0; i < axis.world.size(); ++i) {
+    const double x = std::abs(axis.world[i]), step_m = float_step(x, bits);
+    steps.push_back(step_m);
+    const double own_rounding_m = 0.51 * axis.rounding_m[i] + 1e-15 * x, rounding_m = own_rounding_m + 0.5 * printed_m;
+    if (step_m <= limit_m || rounding_m > step_m / 8.0) continue;
+    const double multiple = std::round(x / step_m), from_multiple_m = std::abs(x - multiple * step_m);
+    if (from_multiple_m > rounding_m) return {true};
+    exact = exact && from_multiple_m <= own_rounding_m;
+    ++n_seen;
+    n_odd += std::fmod(multiple, 2.0) == 1.0 ? 1U : 0U;
+  }
+  const double step_m = reached_by_share(steps);
+  if (step_m <= limit_m || n_seen < (exact ? kFewest : kFewestRounded)) return {};
+  const double odd_share = static_cast<double>(n_odd) / static_cast<double>(n_seen);
+  if (odd_share <= kShare || odd_share >= 1.0 - kShare) return {true};
+  return {false, step_m};
 }
 
 /// Whether the values differ by single steps too: in a raster of 0.2, 0.25 or 0.5 they do not.
@@ -115,20 +131,28 @@ void keep_coarser(std::optional<CoordinateStep>& coarsest, double step_m, const 
   coarsest = CoordinateStep{step_m, axis, axes[static_cast<std::size_t>(axis)].largest(), cause};
 }
 
+/// Floats are a property of all three axes: one that speaks against them outweighs the others.
+void keep_binary(std::optional<CoordinateStep>& coarsest, const std::array<Axis, 3>& axes, int bits, double limit_m,
+                 CoordinateStep::Cause cause) {
+  std::array<BinaryAxis, 3> found;
+  std::ranges::transform(axes, found.begin(), [&](const Axis& axis) { return binary_axis(axis, bits, limit_m); });
+  if (std::ranges::any_of(found, &BinaryAxis::against)) return;
+  for (int a = 0; a < 3; ++a) keep_coarser(coarsest, found[static_cast<std::size_t>(a)].step_m, axes, a, cause);
+}
+
 }  // namespace
 
 std::optional<CoordinateStep> coarse_step(const PointCloud& cloud, double limit_m) {
   using enum CoordinateStep::Cause;
   if (cloud.size() < kFewest) return std::nullopt;
   const std::array<Axis, 3> axes = sampled_axes(cloud);
-  const bool float16 = all_of_bits(axes, kFloat16Bits), float32 = all_of_bits(axes, kFloat32Bits);
   std::optional<CoordinateStep> coarsest;
+  keep_binary(coarsest, axes, kFloat16Bits, limit_m, kFloat16);
+  keep_binary(coarsest, axes, kFloat32Bits, limit_m, kFloat32);
   for (int a = 0; a < 3; ++a) {
     const Axis& axis = axes[static_cast<std::size_t>(a)];
     const double held_m = reached_by_share(axis.rounding_m);
     keep_coarser(coarsest, held_m > limit_m ? held_m : 0.0, axes, a, kOwnOffsets);
-    if (float16) keep_coarser(coarsest, binary_step(axis, kFloat16Bits, limit_m), axes, a, kFloat16);
-    if (float32) keep_coarser(coarsest, binary_step(axis, kFloat32Bits, limit_m), axes, a, kFloat32);
     keep_coarser(coarsest, decimal_step(axis, limit_m), axes, a, kDigits);
   }
   return coarsest;

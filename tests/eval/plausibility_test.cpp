@@ -67,6 +67,20 @@ TEST(CoarseStep, OfFloat32InUtm) {
   EXPECT_FALSE(coarse_step(random_map(30000, kUtm, as_double), kMillimeter));
 }
 
+/// Text of floats: 5400000.5 and 500012.03125 keep their digits, 303.127 does not.
+TEST(CoarseStep, OfFloat32PrintedWithFewerDigits) {
+  for (const double decimal : {1e-6, 1e-3, 1e-2}) {
+    const auto printed_float = [&](double x) { return std::round(as_float(x) / decimal) * decimal; };
+    const auto step = coarse_step(random_map(1000, kUtm, printed_float), kMillimeter);
+    ASSERT_TRUE(step) << decimal;
+    EXPECT_EQ(step->step_m, 0.5) << decimal;
+    EXPECT_EQ(step->cause, Cause::kFloat32) << decimal;
+    const auto printed_double = [&](double x) { return std::round(x / decimal) * decimal; };
+    const auto other = coarse_step(random_map(1000, kUtm, printed_double), kMillimeter);
+    EXPECT_TRUE(!other || other->cause == Cause::kDigits) << decimal;
+  }
+}
+
 TEST(CoarseStep, OfFloat16) {
   const auto as_half = [](double x) { return std::round(x / 0.03125) * 0.03125; };  // 32 to 64: 2^5 / 2^10
   const auto step = coarse_step(random_map(200, {{33, 33, 33}, {63, 63, 63}}, as_half), kMillimeter);
