@@ -11,8 +11,9 @@ namespace {
 
 // Points looked at, evenly spread over the file: enough for shares of a percent, nothing beside reading.
 constexpr std::size_t kSample = 1 << 14;
-constexpr double kLargeShare = 0.2;       // of one color
-constexpr double kSmallShare = 0.01;      // of colors on another scale than the rest
+constexpr double kLargeShare = 0.2;   // of one color
+constexpr double kMixedShare = 0.05;  // of colors on another scale than the rest
+constexpr double kNearlyAll = 0.99;
 constexpr std::uint64_t kFewPoints = 20;  // in which a color may repeat by chance
 
 std::vector<RgbF> sample_of(const Colors& colors, std::size_t size) {
@@ -62,26 +63,32 @@ void warn_of_one_color(const Colors& colors, std::size_t size, std::vector<RgbF>
 
 float brightest(const RgbF& color) { return std::max({color[0], color[1], color[2]}); }
 
-/// Whether nearly all colors that are not black are no brighter than `limit` (in 1/255).
-bool nearly_all_below(const std::vector<RgbF>& sample, float limit) {
-  std::size_t n = 0, n_above = 0;
+/// Share of the colors that are not black which are no brighter than `limit` (in 1/255), as if on another scale: next
+/// to none is between it and its double, where a scene's dark colors would go on. 0 where there are few.
+double share_below(const std::vector<RgbF>& sample, float limit) {
+  constexpr double kGap = 0.1;  // of as many
+  std::size_t n = 0, n_below = 0, n_next = 0;
   for (const RgbF& color : sample) {
-    n += brightest(color) > 0.0F ? 1 : 0;
-    n_above += brightest(color) > limit ? 1 : 0;
+    const float bright = brightest(color);
+    n += bright > 0.0F ? 1 : 0;
+    n_below += bright > 0.0F && bright <= limit ? 1 : 0;
+    n_next += bright > limit && bright <= 2.0F * limit ? 1 : 0;
   }
-  return n >= kFewPoints && static_cast<double>(n_above) < kSmallShare * static_cast<double>(n);
+  if (n_below < kFewPoints || static_cast<double>(n_next) > kGap * static_cast<double>(n_below)) return 0.0;
+  return static_cast<double>(n_below) / static_cast<double>(n);
 }
 
 struct Range {
-  float white;        ///< the number that stands for white
-  float below;        ///< the white of the next smaller scale
-  float small_share;  ///< of white: below, no scene is that dark
+  float white;                       ///< the number that stands for white
+  float below;                       ///< the white of the next smaller scale
+  float small_share;                 ///< of white: below, no scene is that dark
+  double mixed_share = kMixedShare;  ///< of colors on the next smaller scale: more are no dark parts of a scene
 };
 
 Range range_of(const Colors& colors, const StoredColors& stored) {
   constexpr float kEighth = 0.126F, kQuarter = 0.251F;  // a quarter: cameras of 14 bits in fields of 16
   if (std::holds_alternative<Array<Rgb16>>(colors)) return {65535.0F, 255.0F, kQuarter};
-  if (std::holds_alternative<Array<Rgb8>>(colors)) return {255.0F, 1.0F, kEighth};
+  if (std::holds_alternative<Array<Rgb8>>(colors)) return {255.0F, 1.0F, kEighth, kNearlyAll};
   return {stored.white, stored.white > 255.0F ? 255.0F : stored.white > 1.0F ? 1.0F : 0.0F, kEighth};
 }
 
@@ -94,13 +101,27 @@ void warn_of_dark_colors(const Colors& colors, const StoredColors& stored, const
          fmt::format("the highest color value is {:g} of {:g}: are the colors on another scale (10 or 12 "
                      "bits, or cut to 0 and 1)?",
                      stored.highest, range.white)});
-  } else if (range.below > 0.0F && nearly_all_below(sample, 255.0F * range.below / range.white)) {
-    info.warnings.push_back(
-        {"dark_colors",
-         fmt::format("nearly all color values are at most {:g}, but the highest is {:g}, so that {:g} was "
-                     "taken for white: are a few points on another scale than the rest?",
-                     range.below, stored.highest, range.white)});
+    return;
   }
+  const double share = range.below > 0.0F ? share_below(sample, 255.0F * range.below / range.white) : 0.0;
+  if (share < range.mixed_share) return;
+  info.warnings.push_back(
+      {"dark_colors",
+       fmt::format("{:.3g} % of the colors that are not black are at most {:g}, but the highest value is {:g}, so that "
+                   "{:g} was taken for white: are some points on another scale than the rest?",
+                   100.0 * share, range.below, stored.highest, range.white)});
+}
+
+/// 8-bit colors shifted up by 7 bits, as by cameras and writers that keep a bit for the sign.
+void warn_of_fifteen_bits(const Colors& colors, const StoredColors& stored, FileInfo& info) {
+  constexpr std::uint32_t kShifted = 0xffU << 7;
+  const bool shifted = (stored.bits & ~kShifted) == 0 && (stored.bits & (kShifted & ~0xff00U)) != 0;
+  if (!std::holds_alternative<Array<Rgb16>>(colors) || !shifted) return;
+  info.warnings.push_back(
+      {"dark_colors",
+       fmt::format("all color values are multiples of 128 and the highest is {:g}, though 65535 was taken for white: "
+                   "are they 8-bit colors times 128? Then half of every color is missing",
+                   stored.highest)});
 }
 
 }  // namespace
@@ -144,6 +165,7 @@ void warn_of_odd_colors(const Colors& colors, const StoredColors& stored, FileIn
   info.gray_colors =
       std::all_of(sample.begin(), sample.end(), [](const RgbF& c) { return c[0] == c[1] && c[1] == c[2]; });
   warn_of_dark_colors(colors, stored, sample, info);
+  warn_of_fifteen_bits(colors, stored, info);
   warn_of_one_color(colors, size, sample, info);
 }
 

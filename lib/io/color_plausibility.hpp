@@ -18,10 +18,11 @@ std::string color_scale_note(const Colors& colors, float white, const ColorDecla
 /// The numbers of a file as they were stored.
 struct StoredColors {
   float highest = 0.0F;
-  float white = 0.0F;  ///< of floats; 0: the type says it
+  float white = 0.0F;      ///< of floats; 0: the type says it
+  std::uint32_t bits = 0;  ///< that any of the whole numbers has
 };
 
-/// Warns of colors that can hardly be what was meant: none brighter than a small share of the range, a few far brighter
+/// Warns of colors that can hardly be what was meant: none brighter than a small share of the range, some far brighter
 /// than all others (another scale), a large share of exactly one color. Sets info.gray_colors.
 void warn_of_odd_colors(const Colors& colors, const StoredColors& stored, FileInfo& info);
 

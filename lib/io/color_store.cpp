@@ -262,7 +262,7 @@ Colors ColorStore::finish(const ByteSource& source, FileInfo& info) {
         {"points_without_color",
          fmt::format("{} of {} points have no color (NaN); they count for geometry alone", n_without_color_, size_)});
   }
-  warn_of_odd_colors(colors_, {highest_, std::holds_alternative<Array<RgbF>>(colors_) ? white_ : 0.0F}, info);
+  warn_of_odd_colors(colors_, {highest_, std::holds_alternative<Array<RgbF>>(colors_) ? white_ : 0.0F, bits_}, info);
   return std::move(colors_);
 }
 

@@ -48,6 +48,22 @@ void warn_of_cut(const PlyElement& element, std::uint64_t rows, FileInfo& info) 
                                                           rows, element.count, element.name)});
 }
 
+/// Whether a row holds as many numbers as its lists announce.
+bool is_whole(std::string_view row, const PlyElement& element) {
+  for (const Field& field : element.properties) {
+    double n = 1.0;
+    std::string_view token = next_token(row);
+    if (token.empty()) return false;
+    if (!field.list_count_type) continue;
+    if (!parse_number(token, n)) return true;  // not ours to judge
+    for (; n > 0.0; --n) {
+      token = next_token(row);
+      if (token.empty()) return false;
+    }
+  }
+  return true;
+}
+
 /// False where the file ends within the element.
 bool pass_ascii(LineReader& lines, const PlyElement& element, FileInfo& info) {
   if (element.properties.empty()) return true;
@@ -57,9 +73,11 @@ bool pass_ascii(LineReader& lines, const PlyElement& element, FileInfo& info) {
       if (lines.next(line)) continue;
       warn_of_cut(element, i, info);
       return false;
-    } while (next_token(line).empty());
+    } while (without_blanks(line).empty());
   }
-  return true;
+  if (element.count == 0 || is_whole(line, element)) return true;
+  warn_of_cut(element, element.count - 1, info);
+  return false;
 }
 
 bool pass_lists(ByteSource& source, const PlyElement& element, bool swap_bytes, FileInfo& info) {

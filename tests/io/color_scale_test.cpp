@@ -188,6 +188,34 @@ TEST(ColorScale, DarkColorsAreSaid) {
               HasSubstr("0.003 of 1"));
 }
 
+TEST(ColorScale, TwoScalesInOneFileAreSaid) {
+  const auto merged = [](auto low, const auto& high, std::size_t n_low) {
+    low.resize(n_low);
+    low.insert(low.end(), high.begin(), high.end());
+    return low;
+  };
+  // 40 of 105 colors of tiles that kept 8 bits: the test card has no other brightest channel below 256 of 65535.
+  const auto sixteen = mapped<U16>([](int v) { return 257 * v; });
+  const auto file = read_content("a.ply", ply_of("ushort", merged(mapped<U16>([](int v) { return v; }), sixteen, 40)));
+  EXPECT_THAT(all_warnings(file), ::testing::AllOf(HasSubstr("38.1 %"), HasSubstr("at most 255")));
+  const auto whole = mapped<float>([](int v) { return 0.99F * static_cast<float>(v) + 0.25F; });
+  const auto floats = merged(mapped<float>([](int v) { return static_cast<float>(v) / 255.0F; }), whole, 40);
+  EXPECT_THAT(all_warnings(read_content("a.ply", ply_of("float", floats))),
+              ::testing::AllOf(HasSubstr("38.1 %"), HasSubstr("at most 1,")));
+  // A dark scene goes on beyond 255: gray levels 0, 32, 64 ... of 65535 and one white point.
+  std::vector<std::array<U16, 3>> dark;
+  for (int i = 0; i < 100; ++i) dark.push_back({static_cast<U16>(32 * i), 0, 1});
+  dark.push_back({65535, 0, 0});
+  EXPECT_EQ(all_warnings(read_content("a.ply", ply_of("ushort", dark))), "");
+}
+
+TEST(ColorScale, EightBitsTimes128AreSaid) {
+  EXPECT_THAT(all_warnings(read_content("a.ply", ply_of("ushort", mapped<U16>([](int v) { return 128 * v; })))),
+              HasSubstr("8-bit colors times 128"));
+  EXPECT_EQ(all_warnings(read_content("a.ply", ply_of("ushort", mapped<U16>([](int v) { return 128 * v + v % 2; })))),
+            "");
+}
+
 TEST(ColorScale, OneColorForManyPointsIsSaid) {
   std::vector<std::array<U8, 3>> colors = mapped<U8>([](int v) { return v; });
   colors.insert(colors.end(), 40, {0, 0, 0});  // 40 of 105

@@ -100,6 +100,21 @@ TEST(PlyReader, MeshesAreNamed) {
               HasSubstr("only the faces of the mesh have colors"));
 }
 
+TEST(PlyReader, ATextThatEndsWithinItsLastFaceIsSaid) {
+  const std::string whole =
+      header("ascii", vertices(3, kXyz) + "element face 2\nproperty list uchar int vertex_indices\n") +
+      "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 2 1 0\n";
+  EXPECT_THAT(warnings_of(read_content("a.ply", whole)), ::testing::Not(HasSubstr("ends early")));
+  EXPECT_THAT(warnings_of(read_content("a.ply", whole.substr(0, whole.size() - 1))),
+              ::testing::Not(HasSubstr("ends early")))
+      << "a last line without its end is whole";
+  for (const std::size_t missing : {2U, 3U, 5U, 7U, 8U}) {
+    EXPECT_THAT(warnings_of(read_content("a.ply", whole.substr(0, whole.size() - missing))),
+                HasSubstr("after 1 of 2 rows of 'face'"))
+        << missing;
+  }
+}
+
 TEST(PlyReader, AFileThatEndsWithinItsFacesIsSaid) {
   const std::string face = "element face 2\nproperty list uchar int vertex_indices\n";
   Bytes bytes(header("binary_little_endian", vertices(1, kXyz) + face));
