@@ -16,7 +16,7 @@
 namespace cmap {
 namespace {
 
-constexpr double kVoxelsPerSize = 100.0;
+constexpr double kCoarseVoxelsPerSize = 100.0;
 constexpr double kFeatureVoxels = 5.0;    ///< radius of the features
 constexpr double kToleranceVoxels = 1.5;  ///< of matched points, each up to a voxel off
 constexpr std::size_t kNormalNeighbors = 15;
@@ -174,7 +174,7 @@ Similarity best_guess(const PointCloud& source, const PointCloud& target, double
 Alignment global_registration(const PointCloud& source, const PointCloud& target, const GlobalOptions& options) {
   require_points(source, "source");
   require_points(target, "target");
-  const double voxel_m = options.voxel_m.value_or(size_of(target) / kVoxelsPerSize);
+  const double voxel_m = options.voxel_m.value_or(size_of(target) / kCoarseVoxelsPerSize);
   const double fine_voxel_m = options.fine_voxel_m.value_or(voxel_m / 8.0);
   if (!(voxel_m > 0.0) || !(fine_voxel_m > 0.0)) throw UsageError("voxel_m must be above 0");
   const Similarity guess = world_transform(best_guess(source, target, voxel_m, options), source.origin, target.origin);

@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kPointChunk = 1024;
 constexpr double kPlaneThickness = 1e-3;  ///< variance across a plane over that along it (Segal et al.)
 
-constexpr std::array<const char*, 3> kMethodNames{"icp", "plane", "gicp"};
+constexpr std::array<const char*, 3> kMetricNames{"icp", "plane", "gicp"};
 
 /// What an iteration sees: one level's clouds and the matches at the present transform.
 class Level {
@@ -147,7 +147,7 @@ Alignment icp(const PointCloud& source, const PointCloud& target, const Eigen::M
               const IcpOptions& options) {
   check_options(options);
   Alignment result;
-  result.method = kMethodNames[static_cast<std::size_t>(options.metric)];
+  result.method = kMetricNames[static_cast<std::size_t>(options.metric)];
   Similarity T = similarity_from(T_initial);
   for (std::size_t i = 0; i < options.levels.size(); ++i) {
     const IcpLevel& settings = options.levels[i];

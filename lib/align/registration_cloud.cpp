@@ -13,17 +13,17 @@
 namespace cmap {
 namespace {
 
-constexpr std::size_t kPointChunk = 1024;
+constexpr std::size_t kNormalChunk = 1024;
 
 /// Planes, spheres and corridors with noise or curvature look determined to up to this times the variance of their
 /// normals' tilt; rooms, towns and LiDAR scans lose a few percent of their information to it.
 constexpr double kNoiseMargin = 2.0;
 
 /// A surface that slides in itself up to normals this noisy (1e-3 rad) determines nothing; up to the second it is weak.
-constexpr double kUndetermined = 1e-6;
+constexpr double kUndeterminedCondition = 1e-6;
 
 void require_observable(const Observability& found) {
-  if (found.condition > kUndetermined) return;
+  if (found.condition > kUndeterminedCondition) return;
   throw UnsupportedError(
       fmt::format("the alignment is not determined: {} is free (condition {:.1e})", found.weakest, found.condition));
 }
@@ -62,7 +62,7 @@ void assess(MovingSource& source, RegistrationTarget& target, const Similarity& 
   };
   const PairMoments moments = pair_moments(source.size(), pair_at);
   if (moments.n < 3) fail_no_overlap(moments.n, max_distance_m);
-  const auto information = ordered_sum<NormalEquations>(source.size(), kPointChunk, [&](std::size_t b, std::size_t e) {
+  const auto information = ordered_sum<NormalEquations>(source.size(), kNormalChunk, [&](std::size_t b, std::size_t e) {
     NormalEquations part;
     for (std::size_t slot = b; slot < e; ++slot) {
       if (!(field.sq_dist[slot] <= sq_max)) continue;

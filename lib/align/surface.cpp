@@ -10,7 +10,7 @@
 namespace cmap {
 namespace {
 
-constexpr std::size_t kPointChunk = 1024;
+constexpr std::size_t kSurfaceChunk = 1024;
 
 /// Neighborhoods whose variance across is below this share of that along are lines.
 constexpr double kLine = 0.02;
@@ -57,7 +57,7 @@ void Surface::fit(const Array<std::uint32_t>& slots) {
   if (missing.empty()) return;
   std::sort(missing.begin(), missing.end());  // neighbors in a row are found faster
   const Array<std::uint32_t> neighbors = find_k_nearest(cloud_, chosen_points(cloud_.points, missing), k_);
-  parallel_chunks(missing.size(), kPointChunk, [&](std::size_t begin, std::size_t end) {
+  parallel_chunks(missing.size(), kSurfaceChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const LocalPlane plane = plane_through(cloud_.points, &neighbors[i * k_], k_);
       normals_[missing[i]] = plane.normal;

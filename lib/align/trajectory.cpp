@@ -13,7 +13,7 @@
 namespace cmap {
 namespace {
 
-constexpr std::array<const char*, 3> kMethodNames{"trajectory-first-frame", "trajectory-se3", "trajectory-sim3"};
+constexpr std::array<const char*, 3> kFitNames{"trajectory-first-frame", "trajectory-se3", "trajectory-sim3"};
 
 Similarity first_frame(const PosePair& pair) {
   Similarity T;
@@ -121,7 +121,7 @@ Alignment align_trajectories(const Trajectory& source, const Trajectory& target,
                            ? first_frame(pairs.front())
                            : fit_centers(pairs, with_scale ? ScaleModel::free() : ScaleModel::rigid());
   Alignment result;
-  result.method = kMethodNames[static_cast<std::size_t>(fit)];
+  result.method = kFitNames[static_cast<std::size_t>(fit)];
   result.T_dst_src = T.matrix();
   result.scale = T.scale;
   result.n_source = source.size();

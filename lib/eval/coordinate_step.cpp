@@ -12,9 +12,9 @@
 namespace cmap {
 namespace {
 
-constexpr std::size_t kSample = 10000;
-constexpr std::size_t kFewest = 4;  // below, anything may be chance
-constexpr double kShare = 0.1;      // of the coordinates that must be coarse
+constexpr std::size_t kStepSample = 10000;
+constexpr std::size_t kFewestCoordinates = 4;  // below, anything may be chance
+constexpr double kShare = 0.1;                 // of the coordinates that must be coarse
 
 /// One axis of the sample: what the file said, as far as our offsets kept it, and how well they did.
 struct Axis {
@@ -33,7 +33,7 @@ double float_step(double x, int bits) { return x == 0.0 ? 0.0 : std::ldexp(1.0, 
 
 std::array<Axis, 3> sampled_axes(const PointCloud& cloud) {
   std::array<Axis, 3> axes;
-  for (const std::size_t i : sampled_indices(cloud.size(), kSample)) {
+  for (const std::size_t i : sampled_indices(cloud.size(), kStepSample)) {
     const Eigen::Vector3d offset = cloud.positions[i].cast<double>();
     for (int a = 0; a < 3; ++a) {
       Axis& axis = axes[static_cast<std::size_t>(a)];
@@ -96,7 +96,7 @@ BinaryAxis binary_axis(const Axis& axis, int bits, double limit_m) {
     n_odd += std::fmod(multiple, 2.0) == 1.0 ? 1U : 0U;
   }
   const double step_m = reached_by_share(steps);
-  if (step_m <= limit_m || n_seen < (exact ? kFewest : kFewestRounded)) return {};
+  if (step_m <= limit_m || n_seen < (exact ? kFewestCoordinates : kFewestRounded)) return {};
   const double odd_share = static_cast<double>(n_odd) / static_cast<double>(n_seen);
   if (odd_share <= kShare || odd_share >= 1.0 - kShare) return {true};
   return {false, step_m};
@@ -144,7 +144,7 @@ void keep_binary(std::optional<CoordinateStep>& coarsest, const std::array<Axis,
 
 std::optional<CoordinateStep> coarse_step(const PointCloud& cloud, double limit_m) {
   using enum CoordinateStep::Cause;
-  if (cloud.size() < kFewest) return std::nullopt;
+  if (cloud.size() < kFewestCoordinates) return std::nullopt;
   const std::array<Axis, 3> axes = sampled_axes(cloud);
   std::optional<CoordinateStep> coarsest;
   keep_binary(coarsest, axes, kFloat16Bits, limit_m, kFloat16);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kDifferentSizes = 2.5;  // networks give maps of a third; a part of a map is seldom below
 constexpr double kDifferentUnits = 100.0;
-constexpr std::uint64_t kFewest = 10;  // points, below which only units are told from sizes
+constexpr std::uint64_t kFewestForSizes = 10;  // points, below which only units are told from sizes
 
 struct Unit {
   const char* name;
@@ -30,7 +30,7 @@ std::string guess(const char* larger, double factor) {
 
 void warn_about_sizes(const CloudBody& reference, const CloudBody& estimate, std::vector<Warning>& warnings) {
   const double reference_m = reference.core_diagonal_m(), estimate_m = estimate.core_diagonal_m();
-  const double different = std::min(reference.n, estimate.n) < kFewest ? kDifferentUnits : kDifferentSizes;
+  const double different = std::min(reference.n, estimate.n) < kFewestForSizes ? kDifferentUnits : kDifferentSizes;
   const double smaller_m = std::min(reference_m, estimate_m), larger_m = std::max(reference_m, estimate_m);
   if (larger_m < different * smaller_m || larger_m == 0.0) return;
   std::string factor, why = "do all points of one stand at one place?";

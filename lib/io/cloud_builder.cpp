@@ -10,9 +10,6 @@
 namespace cmap {
 namespace {
 
-// Points decoded and then checked while they are still in the cache.
-constexpr std::size_t kPiece = ColorStore::kPiece;
-
 // More points exactly at 0 0 0 than a sensor could measure there.
 constexpr std::uint64_t kManyZeros = 10;
 constexpr double kManyZerosShare = 1e-3;
@@ -107,8 +104,8 @@ void CloudBuilder::append(const PointColumns& columns, std::size_t n) {
   if (n > max_points_ - seen_) throw std::logic_error("CloudBuilder: more points than announced");
   std::visit(
       [&](auto& positions) {
-        for (std::size_t first = 0; first < n; first += kPiece) {
-          append_piece(positions, columns, first, std::min(kPiece, n - first));
+        for (std::size_t first = 0; first < n; first += ColorStore::kPiece) {
+          append_piece(positions, columns, first, std::min(ColorStore::kPiece, n - first));
         }
       },
       positions_);

@@ -15,7 +15,7 @@ constexpr std::size_t kTrackPairBytes = 8;  // IMAGE_ID, POINT2D_IDX
 
 /// Of a binary point, before its track: id, x y z as doubles, r g b as bytes, error, length of the track.
 constexpr std::size_t kXyzOffset = 8;
-constexpr std::size_t kRgbOffset = 32;
+constexpr std::size_t kRgbAt = 32;
 constexpr std::size_t kErrorOffset = 35;
 constexpr std::size_t kTrackOffset = 43;
 constexpr std::size_t kPointBytes = 51;
@@ -30,7 +30,7 @@ PointColumns columns_of_points(const std::byte* data) {
   columns.color = ColorStorage::kSeparate;
   for (std::size_t k = 0; k < 3; ++k) {
     columns.position[k] = {data + kXyzOffset + 8 * k, kPointBytes, ScalarType::kFloat64};
-    columns.rgb[k] = {data + kRgbOffset + k, kPointBytes, ScalarType::kUint8};
+    columns.rgb[k] = {data + kRgbAt + k, kPointBytes, ScalarType::kUint8};
   }
   return columns;
 }

@@ -10,7 +10,7 @@
 namespace cmap {
 namespace {
 
-constexpr float kWhite8 = 255.0F, kWhite16 = 65535.0F;
+constexpr float kEightBitWhite = 255.0F, kSixteenBitWhite = 65535.0F;
 // What rounding, interpolation and exposure leave outside of the range: a picture resampled with a bicubic filter
 // reaches 5 % beyond, an overexposed one in [0,1] more.
 constexpr float kOvershoot = 1.06F, kOvershootOfOne = 1.5F;
@@ -20,7 +20,7 @@ constexpr float kRounding = 1e-3F;
 
 float white_for(float highest) {
   if (highest <= kOvershootOfOne) return 1.0F;
-  return highest <= kOvershoot * kWhite8 ? kWhite8 : kWhite16;
+  return highest <= kOvershoot * kEightBitWhite ? kEightBitWhite : kSixteenBitWhite;
 }
 
 /// What a piece of floats holds, NaN aside.
@@ -131,7 +131,7 @@ void ColorStore::append_shorts(const PointColumns& columns, std::size_t first, s
   }
   highest_ = std::max(highest_, static_cast<float>(highest));
   bits_ |= bits;
-  if (highest > kWhite8) widen_to_shorts();
+  if (highest > kEightBitWhite) widen_to_shorts();
   if (auto* bytes = std::get_if<Array<Rgb8>>(&colors_)) {
     convert(rgb.data(), 3 * n, channels(*bytes) + 3 * size_);
   } else {
@@ -156,7 +156,7 @@ void ColorStore::append_floats(const ByteSource& source, const PointColumns& col
     const auto place = static_cast<std::size_t>(std::find(rgb.begin(), rgb.end(), value) - rgb.begin());
     return std::pair{point + (kept == nullptr ? place / 3 : (*kept)[place / 3]), place % 3};
   };
-  if (range.high > kOvershoot * kWhite16) {
+  if (range.high > kOvershoot * kSixteenBitWhite) {
     const auto [at, channel] = place_of(range.high);
     source.fail("point {}: {} = {:g}; colors lie in 0 to 1, 0 to 255 or 0 to 65535", at + 1,
                 declaration_.names[channel], range.high);
@@ -166,11 +166,11 @@ void ColorStore::append_floats(const ByteSource& source, const PointColumns& col
     std::tie(lowest_point_, lowest_channel_) = place_of(range.low);
   }
   highest_ = std::max(highest_, range.high);
-  store_floats(rgb.data(), n, range.whole && range.low >= 0.0F && range.high <= kWhite16);
+  store_floats(rgb.data(), n, range.whole && range.low >= 0.0F && range.high <= kSixteenBitWhite);
 }
 
 void ColorStore::store_floats(const float* rgb, std::size_t n, bool whole) {
-  if (whole && highest_ > kWhite8 && std::holds_alternative<Array<Rgb8>>(colors_)) widen_to_shorts();
+  if (whole && highest_ > kEightBitWhite && std::holds_alternative<Array<Rgb8>>(colors_)) widen_to_shorts();
   if (!whole && !std::holds_alternative<Array<RgbF>>(colors_)) widen_to_floats();
   if (auto* bytes = std::get_if<Array<Rgb8>>(&colors_)) {
     convert(rgb, 3 * n, channels(*bytes) + 3 * size_);

@@ -8,7 +8,7 @@
 namespace cmap {
 namespace {
 
-constexpr std::string_view kReadable =
+constexpr std::string_view kReadableFormats =
     "PLY, PCD, LAS, NPY, NPZ, PTS, PTX, KITTI .bin, COLMAP points3D, OpenSfM's "
     "reconstruction.json, OBJ without faces and text (x y z [r g b]) can be read";
 
@@ -62,11 +62,11 @@ const CloudFormat* find(const CloudFormat (&formats)[n], const FileStart& start)
 
 const CloudFormat& detect_format(ByteSource& source) {
   const FileStart start = file_start(source);
-  if (const auto what = foreign_content(start)) source.fail("{}; {}", *what, kReadable);
+  if (const auto what = foreign_content(start)) source.fail("{}; {}", *what, kReadableFormats);
   if (const CloudFormat* format = find(kByContent, start)) return *format;
-  if (const auto what = foreign_extension(start)) source.fail("{}; {}", *what, kReadable);
+  if (const auto what = foreign_extension(start)) source.fail("{}; {}", *what, kReadableFormats);
   if (const CloudFormat* format = find(kByExtension, start)) return *format;
-  source.fail("is of no known format; {}", kReadable);
+  source.fail("is of no known format; {}", kReadableFormats);
 }
 
 }  // namespace cmap

@@ -20,7 +20,7 @@ constexpr int kWktCounts = 16;
 
 // By point format 0 to 10: smallest record, and where red starts (0: no color).
 constexpr std::array<std::size_t, 11> kRecordBytes{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
-constexpr std::array<std::size_t, 11> kRgbOffset{0, 0, 20, 28, 0, 28, 0, 30, 30, 0, 30};
+constexpr std::array<std::size_t, 11> kRgbOffsets{0, 0, 20, 28, 0, 28, 0, 30, 30, 0, 30};
 
 void read_format(const ByteSource& source, std::span<const std::byte> bytes, LasHeader& header) {
   const auto format = load_little<std::uint8_t>(bytes, 104);
@@ -32,7 +32,7 @@ void read_format(const ByteSource& source, std::span<const std::byte> bytes, Las
     source.fail("header: records of {} bytes, but point format {} takes {}", header.record_bytes, format,
                 kRecordBytes[format]);
   }
-  header.rgb_offset = kRgbOffset[format];
+  header.rgb_offset = kRgbOffsets[format];
 }
 
 void read_place(const ByteSource& source, std::span<const std::byte> bytes, LasHeader& header) {

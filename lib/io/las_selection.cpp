@@ -12,11 +12,11 @@ namespace cmap {
 namespace {
 
 // Records looked at and then decoded while they are still in the nearest cache.
-constexpr std::size_t kPiece = 512;
+constexpr std::size_t kRecordsAtOnce = 512;
 
 constexpr std::size_t kFlagsAt = 15;  // in a record of any format
-constexpr std::int32_t kLowest = std::numeric_limits<std::int32_t>::min();
-constexpr std::int32_t kHighest = std::numeric_limits<std::int32_t>::max();
+constexpr std::int32_t kLowestInteger = std::numeric_limits<std::int32_t>::min();
+constexpr std::int32_t kHighestInteger = std::numeric_limits<std::int32_t>::max();
 
 // Fewer points at an end of an axis's integers may be those that the axis was scaled to fit.
 constexpr double kSuspiciousShare = 0.01;
@@ -25,7 +25,9 @@ std::int32_t raw_coordinate(const std::byte* record, std::size_t axis) {
   return load_little<std::int32_t>({record + 4 * axis, 4}, 0);
 }
 
-bool is_end(std::int32_t raw) { return static_cast<std::uint32_t>(raw) - static_cast<std::uint32_t>(kHighest) <= 1U; }
+bool is_end(std::int32_t raw) {
+  return static_cast<std::uint32_t>(raw) - static_cast<std::uint32_t>(kHighestInteger) <= 1U;
+}
 
 }  // namespace
 
@@ -47,17 +49,17 @@ LasSelection::Verdict LasSelection::verdict_of_class(unsigned number, bool keep_
 }
 
 LasSelection::Verdict LasSelection::verdict(const std::byte* record) const {
-  const bool lowest = raw_coordinate(record, 0) == kLowest && raw_coordinate(record, 1) == kLowest &&
-                      raw_coordinate(record, 2) == kLowest;
+  const bool lowest = raw_coordinate(record, 0) == kLowestInteger && raw_coordinate(record, 1) == kLowestInteger &&
+                      raw_coordinate(record, 2) == kLowestInteger;
   if (lowest) return kNoNumber;
   if ((static_cast<std::uint8_t>(record[kFlagsAt]) & withheld_mask_) != 0) return kWithheld;
   return of_class_byte_[static_cast<std::uint8_t>(record[class_at_])];
 }
 
 void LasSelection::append(const std::byte* data, std::size_t n, const RecordLayout& layout, CloudBuilder& builder) {
-  for (std::size_t first = 0; first < n; first += kPiece) {
+  for (std::size_t first = 0; first < n; first += kRecordsAtOnce) {
     const std::byte* piece = data + first * record_bytes_;
-    const std::size_t count = std::min(kPiece, n - first);
+    const std::size_t count = std::min(kRecordsAtOnce, n - first);
     n_ += count;
     if (needs_a_look(piece, count)) {
       look(piece, count, layout, builder);
@@ -111,7 +113,7 @@ void LasSelection::look(const std::byte* data, std::size_t n, const RecordLayout
 void LasSelection::count_ends(const std::byte* record) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::int32_t raw = raw_coordinate(record, axis);
-    if (is_end(raw)) ++(raw == kLowest ? n_lowest_ : n_highest_)[axis];
+    if (is_end(raw)) ++(raw == kLowestInteger ? n_lowest_ : n_highest_)[axis];
   }
 }
 
@@ -132,7 +134,7 @@ std::string LasSelection::reason(Verdict verdict) const {
 
 void LasSelection::check(const ByteSource& source, FileInfo& info) const {
   if (n_no_number_ == n_) {
-    source.fail("every coordinate stands at {}, the lowest integer: the offsets were lost on writing", kLowest);
+    source.fail("every coordinate stands at {}, the lowest integer: the offsets were lost on writing", kLowestInteger);
   }
   if (n_kept_ == 0 && !classes_.empty()) refuse_classes(source);
   for (std::size_t axis = 0; axis < 3; ++axis) check_axis(axis, source, info);
@@ -152,7 +154,7 @@ void LasSelection::check_axis(std::size_t axis, const ByteSource& source, FileIn
   const std::uint64_t n = lowest ? n_lowest_[axis] : n_highest_[axis];
   if (n > 0 && n == n_kept_) {
     source.fail("{} stands at {}, the end of its integers, at every point: its offset was lost on writing", "xyz"[axis],
-                lowest ? kLowest : kHighest);
+                lowest ? kLowestInteger : kHighestInteger);
   }
   if (static_cast<double>(n) <= kSuspiciousShare * static_cast<double>(n_kept_)) return;
   info.warnings.push_back(

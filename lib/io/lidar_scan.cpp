@@ -17,7 +17,7 @@ namespace cmap {
 namespace {
 
 enum Value : std::size_t { kX, kY, kZ, kIntensity, kTime, kRing, kValues };
-constexpr std::array<std::string_view, kValues> kNames{"x", "y", "z", "intensity", "time", "ring"};
+constexpr std::array<std::string_view, kValues> kValueNames{"x", "y", "z", "intensity", "time", "ring"};
 
 /// Which field of the file holds each value; none: the file has no such field.
 using FieldOf = std::array<std::optional<std::size_t>, kValues>;
@@ -25,15 +25,15 @@ using FieldOf = std::array<std::optional<std::size_t>, kValues>;
 FieldOf find_fields(const ByteSource& source, const PcdHeader& header) {
   FieldOf field_of;
   for (std::size_t i = 0; i < header.fields.size(); ++i) {
-    const auto known = std::find(kNames.begin(), kNames.end(), header.fields[i].name);
-    if (known == kNames.end()) continue;
-    auto& place = field_of[static_cast<std::size_t>(known - kNames.begin())];
+    const auto known = std::find(kValueNames.begin(), kValueNames.end(), header.fields[i].name);
+    if (known == kValueNames.end()) continue;
+    auto& place = field_of[static_cast<std::size_t>(known - kValueNames.begin())];
     if (place) source.fail("header: the field '{}' is declared twice", *known);
     if (!header.fields[i].is_scalar()) source.fail("header: the field '{}' is not a single number", *known);
     place = i;
   }
   for (const Value axis : {kX, kY, kZ}) {
-    if (!field_of[axis]) source.fail("header: points have no field '{}'", kNames[axis]);
+    if (!field_of[axis]) source.fail("header: points have no field '{}'", kValueNames[axis]);
   }
   return field_of;
 }

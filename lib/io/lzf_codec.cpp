@@ -6,11 +6,11 @@
 
 namespace cmap {
 namespace {
-constexpr std::size_t kMaxBytes = std::numeric_limits<unsigned int>::max();
+constexpr std::size_t kMostLzfBytes = std::numeric_limits<unsigned int>::max();
 }  // namespace
 
 bool lzf_expand(std::span<const std::byte> compressed, std::span<std::byte> out) {
-  if (compressed.size() > kMaxBytes || out.size() > kMaxBytes) return false;
+  if (compressed.size() > kMostLzfBytes || out.size() > kMostLzfBytes) return false;
   return lzf_decompress(compressed.data(), static_cast<unsigned int>(compressed.size()), out.data(),
                         static_cast<unsigned int>(out.size())) == out.size();
 }
@@ -18,7 +18,7 @@ bool lzf_expand(std::span<const std::byte> compressed, std::span<std::byte> out)
 Array<std::byte> lzf_shrink(std::span<const std::byte> bytes) {
   // Incompressible bytes grow by 1 in 32.
   const std::size_t room = bytes.size() + bytes.size() / 16 + 64;
-  if (room > kMaxBytes) return {};
+  if (room > kMostLzfBytes) return {};
   Array<std::byte> compressed(room);
   compressed.resize(lzf_compress(bytes.data(), static_cast<unsigned int>(bytes.size()), compressed.data(),
                                  static_cast<unsigned int>(room)));

@@ -12,7 +12,6 @@ using Shape = std::vector<std::uint64_t>;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr std::uint64_t kMostColumns = 9;  // x y z, colors and normals
-constexpr std::size_t kBatchDimensions = 5;
 constexpr std::string_view kExpected = "(N, 3), or (N, 4) to (N, 9) with more after x y z, expected of points";
 
 bool may_be_columns(std::uint64_t n) { return n >= 3 && n <= kMostColumns; }
@@ -34,22 +33,20 @@ std::vector<Matrix> matrices_of(const NpyArray& array, Eigen::Index rows, Eigen:
 }
 
 /// A rotation (and scale) in the first three rows and columns.
-bool is_rotation(const Matrix& matrix) {
+bool is_rotation_block(const Matrix& matrix) {
   const Eigen::Matrix3d block = matrix.topLeftCorner<3, 3>();
   const double scale = block.row(0).norm();
   return scale > 0.0 && deviation_from_rotation(block / scale) <= kRotationTolerance;
 }
 
-constexpr double kUnitRowTolerance = 1e-6;
-
 /// [fx s cx; 0 fy cy; 0 0 1]
 bool is_camera_matrix(const Matrix& matrix) {
   return matrix(0, 0) > 0.0 && matrix(1, 1) > 0.0 && matrix(1, 0) == 0.0 &&
-         (matrix.row(2) - Eigen::RowVector3d(0, 0, 1)).cwiseAbs().maxCoeff() <= kUnitRowTolerance;
+         (matrix.row(2) - Eigen::RowVector3d(0, 0, 1)).cwiseAbs().maxCoeff() <= kLastRowTolerance;
 }
 
-bool is_transform(const Matrix& matrix) {
-  return (matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() <= kUnitRowTolerance;
+bool is_transform_matrix(const Matrix& matrix) {
+  return (matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() <= kLastRowTolerance;
 }
 
 /// Refuses (..., 3, 3), (..., 3, 4) and (..., 4, 4) where they are matrices and not points.
@@ -63,13 +60,13 @@ void refuse_matrices(const NpyArray& array) {
   const auto all = [&](auto&& test) { return std::all_of(matrices.begin(), matrices.end(), test); };
   const std::string_view several = n == 2 ? "a " : "";
   const std::string_view plural = n == 2 ? "" : "s";
-  if (rows == 4 && all(is_transform)) {
+  if (rows == 4 && all(is_transform_matrix)) {
     fail_shape(array, fmt::format("{}4x4 transform{}, no points", several, plural));
   }
-  if (rows == 3 && columns == 3 && (all(is_rotation) || all(is_camera_matrix))) {
+  if (rows == 3 && columns == 3 && (all(is_rotation_block) || all(is_camera_matrix))) {
     fail_shape(array, fmt::format("{}3x3 rotation or camera matri{}, no points", several, n == 2 ? "x" : "ces"));
   }
-  if (rows == 3 && columns == 4 && (n > 2 || all(is_rotation))) {
+  if (rows == 3 && columns == 4 && (n > 2 || all(is_rotation_block))) {
     fail_shape(array, fmt::format("{}3x4 pose or projection matri{}, no points", several, n == 2 ? "x" : "ces"));
   }
 }

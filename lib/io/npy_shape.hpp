@@ -20,6 +20,9 @@ struct PointTable {
   std::size_t stride(std::size_t value_bytes) const { return value_bytes * (transposed ? 1 : columns); }
 };
 
+/// An array of so many dimensions has one of scenes in front: (scene, view, row, column, x y z).
+inline constexpr std::size_t kBatchDimensions = 5;
+
 /// How an array of this shape is a table: (..., C) or (C, N) with C from 3 to 9; nothing where it is none.
 std::optional<PointTable> find_point_table(const std::vector<std::uint64_t>& shape);
 

@@ -7,7 +7,7 @@
 namespace cmap {
 namespace {
 
-constexpr std::string_view kReadable = "f2, f4, f8, i1 to i8, u1 to u8 and b1";
+constexpr std::string_view kReadableTypes = "f2, f4, f8, i1 to i8, u1 to u8 and b1";
 
 /// The number of bytes, which the unit of a date may follow; 0 where the text gives none or an absurd one.
 std::size_t length_of(std::string_view digits) {
@@ -52,7 +52,7 @@ NpyField parse_type(const NpyHeaderText& text, std::string_view name) {
   } else if (is_other(kind, bytes)) {
     field.kind = NpyKind::kOther;
   } else {
-    text.refuse("values of type '{}'; {} can be read", field.type.substr(0, 40), kReadable);
+    text.refuse("values of type '{}'; {} can be read", field.type.substr(0, 40), kReadableTypes);
   }
   return field;
 }

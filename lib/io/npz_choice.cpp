@@ -10,7 +10,7 @@
 namespace cmap {
 namespace {
 
-using Entries = std::vector<NpzEntry>;
+using NpzEntries = std::vector<NpzEntry>;
 
 constexpr std::string_view kPointNames[] = {
     "pointcloud", "worldpoints", "points", "xyz",          "positions", "worldpointsfromdepth",
@@ -34,7 +34,7 @@ bool is_one_of(std::string_view name, const std::string_view (&names)[n]) {
   return std::find(std::begin(names), std::end(names), name) != std::end(names);
 }
 
-const NpzEntry* find(const Entries& entries, std::string_view plain) {
+const NpzEntry* find(const NpzEntries& entries, std::string_view plain) {
   const auto found =
       std::find_if(entries.begin(), entries.end(), [&](const auto& e) { return plain_name(e.name) == plain; });
   return found == entries.end() ? nullptr : &*found;
@@ -60,7 +60,7 @@ bool is_column(const NpzEntry* entry) {
   return shape.size() == 1 || (shape.size() == 2 && shape[1] == 1);
 }
 
-std::vector<std::string> coordinate_arrays(const Entries& entries) {
+std::vector<std::string> coordinate_arrays(const NpzEntries& entries) {
   std::vector<std::string> names;
   for (const std::string_view axis : {"x", "y", "z"}) {
     const NpzEntry* entry = find(entries, axis);
@@ -80,7 +80,7 @@ bool may_be_points(const NpzEntry& entry) {
   return entry.header->is_record() || (is_floating(entry.header->fields[0].scalar) && !matrix);
 }
 
-std::vector<std::string> arrays_with_point_shape(const Entries& entries) {
+std::vector<std::string> arrays_with_point_shape(const NpzEntries& entries) {
   std::vector<std::string> names;
   for (const NpzEntry& entry : entries) {
     if (may_be_points(entry)) names.push_back(entry.name);
@@ -89,7 +89,7 @@ std::vector<std::string> arrays_with_point_shape(const Entries& entries) {
 }
 
 /// "a (10, 3) <f4, b.txt and 3 more"
-std::string listed(const Entries& entries) {
+std::string listed_entries(const NpzEntries& entries) {
   constexpr std::size_t kMost = 10;
   std::vector<std::string> texts;
   for (const NpzEntry& entry : entries) {
@@ -102,7 +102,8 @@ std::string listed(const Entries& entries) {
   return fmt::format("{}{}", fmt::join(texts, ", "), more);
 }
 
-[[noreturn]] void refuse(const ByteSource& source, const Entries& entries, const std::vector<std::string>& candidates) {
+[[noreturn]] void refuse(const ByteSource& source, const NpzEntries& entries,
+                         const std::vector<std::string>& candidates) {
   if (find(entries, "depth") != nullptr) {
     source.fail("holds depth but no world_points: a session for cmap_recon, not a point cloud");
   }
@@ -111,9 +112,9 @@ std::string listed(const Entries& entries) {
     source.fail(
         "a ZIP file without an array of points (points, xyz, positions, pointcloud or world_points of shape "
         "(N, 3)); it holds {}",
-        listed(entries));
+        listed_entries(entries));
   }
-  source.fail("several arrays may be the points; name the right one 'points': it holds {}", listed(entries));
+  source.fail("several arrays may be the points; name the right one 'points': it holds {}", listed_entries(entries));
 }
 
 /// The reason why numbers beside the points are no colors.
@@ -130,7 +131,7 @@ bool is_packed(const NpzEntry& entry, std::string_view plain, const NpyPoints& p
 }
 
 /// Red, green and blue in arrays of their own.
-std::optional<ColorArrays> channel_arrays(const Entries& entries, std::uint64_t n) {
+std::optional<ColorArrays> channel_arrays(const NpzEntries& entries, std::uint64_t n) {
   constexpr std::array<std::array<std::string_view, 3>, 2> kChannels{{{"red", "green", "blue"}, {"r", "g", "b"}}};
   for (const auto& channels : kChannels) {
     ColorArrays found;
@@ -144,7 +145,7 @@ std::optional<ColorArrays> channel_arrays(const Entries& entries, std::uint64_t 
 }
 
 /// numpy.savez(file, points, colors) without names; floats might as well be normals.
-std::optional<ColorArrays> colors_without_name(const Entries& entries, const std::string& points_name,
+std::optional<ColorArrays> colors_without_name(const NpzEntries& entries, const std::string& points_name,
                                                const NpyPoints& points, FileInfo& info) {
   const NpzEntry* entry = find(entries, "arr1");
   if (points_name != "arr_0" || entry == nullptr || !is_number(*entry)) return std::nullopt;
@@ -167,7 +168,7 @@ bool has_other_count(const NpzEntry& entry, const NpyPoints& points) {
 
 }  // namespace
 
-PointArrays choose_point_arrays(const ByteSource& source, const Entries& entries) {
+PointArrays choose_point_arrays(const ByteSource& source, const NpzEntries& entries) {
   const NpzEntry* named = nullptr;
   for (const std::string_view name : kPointNames) {
     const NpzEntry* entry = find(entries, name);
@@ -184,7 +185,7 @@ PointArrays choose_point_arrays(const ByteSource& source, const Entries& entries
   refuse(source, entries, candidates);
 }
 
-std::optional<ColorArrays> choose_colors(const ByteSource& source, const Entries& entries,
+std::optional<ColorArrays> choose_colors(const ByteSource& source, const NpzEntries& entries,
                                          const std::string& points_name, const NpyPoints& points, FileInfo& info) {
   const NpzEntry* wrong = nullptr;
   const auto look = [&](std::string_view name) -> std::optional<ColorArrays> {
@@ -211,8 +212,8 @@ std::optional<ColorArrays> choose_colors(const ByteSource& source, const Entries
   return colors_without_name(entries, points_name, points, info);
 }
 
-std::optional<std::string> choose_mask(const ByteSource& source, const Entries& entries, const std::string& points_name,
-                                       const NpyPoints& points) {
+std::optional<std::string> choose_mask(const ByteSource& source, const NpzEntries& entries,
+                                       const std::string& points_name, const NpyPoints& points) {
   for (const std::string_view name : kMaskNames) {
     const NpzEntry* entry = find(entries, name);
     if (entry == nullptr || !entry->header || entry->header->is_record()) continue;

@@ -2,6 +2,7 @@
 #include <deque>
 
 #include "io/format_readers.hpp"
+#include "io/npy_shape.hpp"
 #include "io/npz_choice.hpp"
 #include "io/npz_colors.hpp"
 #include "io/point_names.hpp"
@@ -47,7 +48,6 @@ class NpzCloud {
       info_.notes.push_back(fmt::format("the array {} taken as the points, by its shape", name_));
     }
     const auto& shape = array.shape();
-    constexpr std::size_t kBatchDimensions = 5;
     if (!array.header.is_record() && shape.size() >= kBatchDimensions) {
       info_.notes.push_back(fmt::format("{}: the batch dimension of 1 in {} dropped", name_, shape_text(shape)));
     }

@@ -8,31 +8,31 @@
 namespace cmap {
 namespace {
 
-using Json = nlohmann::json;
+using OpenSfmJson = nlohmann::json;
 
-Json parse(ByteSource& source) {
+OpenSfmJson parse(ByteSource& source) {
   std::string text(source.size(), '\0');
   source.read(std::as_writable_bytes(std::span(text)), "the file");
   try {
-    return Json::parse(text);
-  } catch (const Json::exception& error) {
+    return OpenSfmJson::parse(text);
+  } catch (const OpenSfmJson::exception& error) {
     source.fail("is no complete JSON: {}", error.what());
   }
 }
 
-std::size_t n_points(const Json& reconstruction) {
+std::size_t n_points(const OpenSfmJson& reconstruction) {
   if (!reconstruction.is_object()) return 0;
   const auto points = reconstruction.find("points");
   return points == reconstruction.end() || !points->is_object() ? 0 : points->size();
 }
 
 /// The largest of the file's reconstructions; others may lie in frames of their own.
-const Json& choose(const ByteSource& source, const Json& file, FileInfo& info) {
+const OpenSfmJson& choose(const ByteSource& source, const OpenSfmJson& file, FileInfo& info) {
   if (!file.is_array() || file.empty()) source.fail("an OpenSfM reconstruction is an array of objects");
-  const auto fewer = [](const Json& a, const Json& b) { return n_points(a) < n_points(b); };
+  const auto fewer = [](const OpenSfmJson& a, const OpenSfmJson& b) { return n_points(a) < n_points(b); };
   const auto largest = std::max_element(file.begin(), file.end(), fewer);
   std::size_t n_others = 0;
-  for (const Json& reconstruction : file) n_others += n_points(reconstruction);
+  for (const OpenSfmJson& reconstruction : file) n_others += n_points(reconstruction);
   n_others -= n_points(*largest);
   if (n_others > 0) {
     info.warnings.push_back(
@@ -43,11 +43,12 @@ const Json& choose(const ByteSource& source, const Json& file, FileInfo& info) {
   return *largest;
 }
 
-std::array<double, 3> triple(const ByteSource& source, const std::string& id, const Json& point, const char* key) {
+std::array<double, 3> triple(const ByteSource& source, const std::string& id, const OpenSfmJson& point,
+                             const char* key) {
   const auto values = point.is_object() ? point.find(key) : point.end();
   std::array<double, 3> triple{};
   const bool good = point.is_object() && values != point.end() && values->is_array() && values->size() == 3 &&
-                    std::all_of(values->begin(), values->end(), [](const Json& v) { return v.is_number(); });
+                    std::all_of(values->begin(), values->end(), [](const OpenSfmJson& v) { return v.is_number(); });
   if (!good) source.fail("point '{}': '{}' is not three numbers", id.substr(0, 40), key);
   for (std::size_t k = 0; k < 3; ++k) triple[k] = (*values)[k].get<double>();
   return triple;
@@ -64,8 +65,8 @@ bool is_opensfm(const FileStart& start) {
 
 PointCloud read_opensfm(ByteSource& source, FileInfo& info) {
   info.format = "OpenSfM reconstruction";
-  const Json file = parse(source);
-  const Json& points = choose(source, file, info)["points"];
+  const OpenSfmJson file = parse(source);
+  const OpenSfmJson& points = choose(source, file, info)["points"];
   CloudBuilder builder(source, {true, {ColorStorage::kSeparate}}, points.size());
   RowStage stage(builder, true);
   for (const auto& [id, point] : points.items()) {

@@ -23,7 +23,7 @@ Words split(std::string_view text) {
   return words;
 }
 
-std::uint64_t whole_number(const LineReader& lines, std::string_view word) {
+std::uint64_t header_number(const LineReader& lines, std::string_view word) {
   unsigned long long value = 0;
   if (!parse_number(word, value)) lines.fail("'{}' is not a whole number", word);
   return value;
@@ -49,11 +49,11 @@ bool store_line(const LineReader& lines, std::string_view keyword, std::string_v
   } else if (keyword == "VIEWPOINT") {
     raw.viewpoint = split(rest);
   } else if (keyword == "WIDTH") {
-    raw.width = whole_number(lines, next_token(rest));
+    raw.width = header_number(lines, next_token(rest));
   } else if (keyword == "HEIGHT") {
-    raw.height = whole_number(lines, next_token(rest));
+    raw.height = header_number(lines, next_token(rest));
   } else if (keyword == "POINTS") {
-    raw.points = whole_number(lines, next_token(rest));
+    raw.points = header_number(lines, next_token(rest));
   } else {
     return keyword == "VERSION";
   }
@@ -71,10 +71,10 @@ std::vector<Field> make_fields(const LineReader& lines, const RawHeader& raw) {
   if (!raw.counts.empty()) same_length(raw.counts, "COUNT");
   std::vector<Field> fields(n);
   for (std::size_t i = 0; i < n; ++i) {
-    const std::uint64_t bytes = whole_number(lines, raw.sizes[i]);
+    const std::uint64_t bytes = header_number(lines, raw.sizes[i]);
     const auto type = raw.types[i].size() == 1 ? scalar_from_pcd(raw.types[i][0], bytes) : std::nullopt;
     if (!type) lines.fail("the field '{}' has unknown TYPE {} of SIZE {}", raw.fields[i], raw.types[i], raw.sizes[i]);
-    const std::uint64_t count = raw.counts.empty() ? 1 : whole_number(lines, raw.counts[i]);
+    const std::uint64_t count = raw.counts.empty() ? 1 : header_number(lines, raw.counts[i]);
     // COUNT 0 occurs for fields that only pad.
     if (count > ByteSource::kMaxRecordBytes) {
       lines.fail("the field '{}' has COUNT {}; at most {} expected", raw.fields[i], count, ByteSource::kMaxRecordBytes);

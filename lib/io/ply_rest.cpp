@@ -49,7 +49,7 @@ void warn_of_cut(const PlyElement& element, std::uint64_t rows, FileInfo& info) 
 }
 
 /// Whether a row holds as many numbers as its lists announce.
-bool is_whole(std::string_view row, const PlyElement& element) {
+bool is_whole_row(std::string_view row, const PlyElement& element) {
   for (const Field& field : element.properties) {
     double n = 1.0;
     std::string_view token = next_token(row);
@@ -75,7 +75,7 @@ bool pass_ascii(LineReader& lines, const PlyElement& element, FileInfo& info) {
       return false;
     } while (without_blanks(line).empty());
   }
-  if (element.count == 0 || is_whole(line, element)) return true;
+  if (element.count == 0 || is_whole_row(line, element)) return true;
   warn_of_cut(element, element.count - 1, info);
   return false;
 }

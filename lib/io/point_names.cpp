@@ -71,7 +71,7 @@ constexpr std::string_view kPacked[] = {"rgb", "rgba"};
 struct UnitSuffix {
   std::string_view suffix, unit;
 };
-constexpr UnitSuffix kUnits[] = {
+constexpr UnitSuffix kUnitSuffixes[] = {
     {"m", ""},    {"meter", ""},  {"meters", ""},   {"metre", ""},    {"metres", ""},   {"mm", "mm"},      {"cm", "cm"},
     {"km", "km"}, {"ft", "feet"}, {"feet", "feet"}, {"usft", "feet"}, {"in", "inches"}, {"inch", "inches"}};
 
@@ -91,8 +91,8 @@ bool equal(std::string_view name, std::string_view wanted) { return name == want
 bool equal_but_for_unit(std::string_view name, std::string_view wanted) {
   if (!name.starts_with(wanted)) return false;
   const std::string_view rest = name.substr(wanted.size());
-  return rest.empty() ||
-         std::any_of(std::begin(kUnits), std::end(kUnits), [&](const UnitSuffix& unit) { return unit.suffix == rest; });
+  return rest.empty() || std::any_of(std::begin(kUnitSuffixes), std::end(kUnitSuffixes),
+                                     [&](const UnitSuffix& unit) { return unit.suffix == rest; });
 }
 
 std::optional<ColumnTriple> find_position(std::span<const std::string> plain) {
@@ -167,7 +167,7 @@ std::string_view unit_in_name(std::string_view name) {
   for (const Triple& axes : kAxes) {
     for (const std::string_view axis : axes) {
       if (!std::string_view(plain).starts_with(axis)) continue;
-      for (const UnitSuffix& unit : kUnits) {
+      for (const UnitSuffix& unit : kUnitSuffixes) {
         if (std::string_view(plain).substr(axis.size()) == unit.suffix) return unit.unit;
       }
     }

@@ -55,7 +55,7 @@ std::vector<PredictionFrame> read_frames(const fs::path& path) {
   return frames;
 }
 
-void require_equal(const Json& meta, const char* key, std::size_t expected) {
+void require_same_size(const Json& meta, const char* key, std::size_t expected) {
   if (!meta.contains(key)) throw UsageError(fmt::format("key \"{}\" is missing", key));
   if (static_cast<std::size_t>(whole_number(meta[key], key)) != expected) {
     throw UsageError(fmt::format("{} is {}, but that of the depth is {}", key, meta[key].dump(), expected));
@@ -75,9 +75,9 @@ void check_meta(const fs::path& path, const SessionPredictions& session, std::si
   read_input_json_file(path, "the description of a session", [&](const Json& meta) {
     if (!meta.is_object()) throw UsageError("an object expected");
     if (!meta.contains("version") || meta["version"] != 1) throw UsageError("\"version\": 1 expected");
-    require_equal(meta, "frames", frame_count);
-    require_equal(meta, "width", static_cast<std::size_t>(session.width));
-    require_equal(meta, "height", static_cast<std::size_t>(session.height));
+    require_same_size(meta, "frames", frame_count);
+    require_same_size(meta, "width", static_cast<std::size_t>(session.width));
+    require_same_size(meta, "height", static_cast<std::size_t>(session.height));
     require_convention(meta, "pose_convention", {"opencv_cam_from_world"});
     require_convention(meta, "depth_type", {"z"});
     require_convention(meta, "intrinsics_pixel_origin", {"integer_center", "integer_centre"});

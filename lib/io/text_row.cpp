@@ -26,7 +26,7 @@ bool may_have_decimal_comma(std::string_view column) {
 
 bool holds(std::string_view text, char c) { return text.find(c) != std::string_view::npos; }
 
-bool has_decimal_commas(std::string_view row, char separator) {
+bool all_may_have_decimal_commas(std::string_view row, char separator) {
   std::vector<std::string_view> columns;
   split_row(row, separator, columns);
   return std::all_of(columns.begin(), columns.end(), may_have_decimal_comma);
@@ -69,7 +69,7 @@ RowFormat row_format(const ByteSource& source, std::string_view row, std::uint64
   if (!holds(row, ',')) return {holds(row, ';') ? ';' : ' ', false};
   for (const char separator : {';', '\t'}) {
     if (!holds(row, separator)) continue;
-    if (has_decimal_commas(row, separator)) return {separator, true};
+    if (all_may_have_decimal_commas(row, separator)) return {separator, true};
     if (separator == ';')
       source.fail("line {}: mixes ';' and ','; decimal commas cannot be told from separators", number);
   }
@@ -80,7 +80,8 @@ RowFormat row_format(const ByteSource& source, std::string_view row, std::uint64
   // Blanks within what commas separate: blanks are the separators, and every column must have its comma.
   split_row(row, ' ', columns);
   const auto has_comma = [](std::string_view column) { return holds(column, ','); };
-  if (std::all_of(columns.begin(), columns.end(), has_comma) && has_decimal_commas(row, ' ')) return {' ', true};
+  if (std::all_of(columns.begin(), columns.end(), has_comma) && all_may_have_decimal_commas(row, ' '))
+    return {' ', true};
   source.fail("line {}: mixes ',' and blanks; decimal commas cannot be told from separators", number);
 }
 

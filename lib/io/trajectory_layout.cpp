@@ -30,7 +30,7 @@ bool ends_as_matrix(const RowReader& row) {
   return row.number(n - 4) == 0.0 && row.number(n - 3) == 0.0 && row.number(n - 2) == 0.0 && row.number(n - 1) == 1.0;
 }
 
-constexpr std::string_view kKnown =
+constexpr std::string_view kKnownLayouts =
     "a pose is read from 8 numbers, time x y z qx qy qz qw (TUM), from the 12 or 16 of a matrix (KITTI), or from "
     "columns "
     "that a header line names";
@@ -50,11 +50,11 @@ TrajectoryLayout trajectory_layout_by_count(const RowReader& first_row) {
     case 17:
       return ends_as_matrix(first_row) ? in_order(true, 16) : euroc();
     case 4:
-      lines.fail("4 numbers: a position without orientation, or a matrix over several lines; {}", kKnown);
+      lines.fail("4 numbers: a position without orientation, or a matrix over several lines; {}", kKnownLayouts);
     case 7:
-      lines.fail("7 numbers: a pose without its time, or angles in place of a quaternion; {}", kKnown);
+      lines.fail("7 numbers: a pose without its time, or angles in place of a quaternion; {}", kKnownLayouts);
     default:
-      lines.fail("{} numbers; {}", n, kKnown);
+      lines.fail("{} numbers; {}", n, kKnownLayouts);
   }
 }
 

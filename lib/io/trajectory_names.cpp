@@ -15,7 +15,7 @@ namespace {
 
 enum class Quantity { kOther, kTime, kNanoseconds, kPosition, kQuaternion };
 
-struct Column {
+struct TrajectoryColumn {
   Quantity quantity = Quantity::kOther;
   std::size_t axis = 0;  ///< x y z w
   double units_per_s = 0.0;
@@ -85,7 +85,7 @@ std::optional<Quantity> quantity_of(std::string_view base) {
   return std::nullopt;
 }
 
-Column column_of(std::string_view text) {
+TrajectoryColumn column_of(std::string_view text) {
   std::string whole(text);
   const std::string unit = plain(take_unit(whole));
   std::string name = plain(whole);
@@ -150,7 +150,7 @@ std::optional<TrajectoryLayout> trajectory_layout_by_names(const LineReader& lin
   layout.is_named = true;
   Places position, quaternion;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const Column column = column_of(names[i]);
+    const TrajectoryColumn column = column_of(names[i]);
     if (column.quantity == Quantity::kPosition) place(lines, position[column.axis], i, names);
     if (column.quantity == Quantity::kQuaternion) place(lines, quaternion[column.axis], i, names);
     if (column.quantity == Quantity::kNanoseconds) place(lines, layout.nanoseconds, i, names);

@@ -15,7 +15,7 @@ struct KnownStart {
   std::string_view bytes, what;
 };
 
-constexpr std::array kKnown{
+constexpr std::array kOtherFormats{
     KnownStart{"\x93NUMPY"sv, "a NumPy array; numpy.savetxt writes its poses as rows of 8 or 12 numbers"},
     KnownStart{"PK\x03\x04"sv, "an archive; rows of poses as text expected"},
     KnownStart{"{"sv, "JSON; rows of poses as text expected (TUM: time x y z qx qy qz qw)"},
@@ -40,7 +40,7 @@ void refuse_other_than_poses(ByteSource& source) {
   std::string_view start(reinterpret_cast<const char*>(bytes.data()), std::min<std::size_t>(bytes.size(), kLookAt));
   start = without_byte_order_mark(start);
   start.remove_prefix(std::min(start.size(), start.find_first_not_of(" \t\r\n")));
-  for (const auto& [known, what] : kKnown) {
+  for (const auto& [known, what] : kOtherFormats) {
     if (start.starts_with(known)) source.fail("is {}", what);
   }
   if (!starts_as_utf16(start) && start.find('\0') != std::string_view::npos)

@@ -13,9 +13,6 @@ namespace {
 /// Shorter ones have no direction that their digits could give.
 constexpr double kShortestQuaternion = 1e-6;
 
-/// How far the last row of a matrix may be off 0 0 0 1.
-constexpr double kLastRowTolerance = 1e-6;
-
 using Matrix34 = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
 
 StampedPose pose_of_matrix(const LineReader& lines, const std::vector<double>& v) {

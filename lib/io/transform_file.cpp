@@ -18,13 +18,10 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
 
-constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 20;
-
-/// Computed matrices (an inverse, a product) miss 0 0 0 1 by some roundings of single precision.
-constexpr double kLastRowTolerance = 1e-6;
+constexpr std::uint64_t kMostTransformBytes = std::uint64_t{1} << 20;
 
 std::string read_all(ByteSource& source) {
-  if (source.size() > kMaxBytes) source.fail("{} bytes are too many for a transform", source.size());
+  if (source.size() > kMostTransformBytes) source.fail("{} bytes are too many for a transform", source.size());
   std::string text(source.size(), '\0');
   source.read(std::as_writable_bytes(std::span(text)), "the file");
   return text;
@@ -121,7 +118,7 @@ void check_similarity(const ByteSource& source, Eigen::Matrix4d& matrix) {
 }  // namespace
 
 TransformNumbers transform_from_npy(ByteSource& source) {
-  if (source.size() > kMaxBytes) source.fail("{} bytes are too many for a transform", source.size());
+  if (source.size() > kMostTransformBytes) source.fail("{} bytes are too many for a transform", source.size());
   const NpyArray array = read_npy(source);
   std::vector<std::uint64_t> shape = array.shape();
   while (shape.size() > 1 && shape.front() == 1) shape.erase(shape.begin());

@@ -106,7 +106,7 @@ class PrintedMatrix {
   int depth_ = 0;  ///< of brackets and braces
 };
 
-bool is_whole(double value) { return value == std::floor(value); }
+bool is_whole_number(double value) { return value == std::floor(value); }
 
 /// COLMAP's and Open3D's .log: before each pose's four rows a line of three whole numbers.
 void take_log(const ByteSource& source, TransformNumbers& numbers) {
@@ -116,7 +116,7 @@ void take_log(const ByteSource& source, TransformNumbers& numbers) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (rows[i] != kPose[i % kPose.size()]) return;
   }
-  if (!std::all_of(numbers.values.begin(), numbers.values.begin() + 3, is_whole)) return;
+  if (!std::all_of(numbers.values.begin(), numbers.values.begin() + 3, is_whole_number)) return;
   if (const std::size_t n = rows.size() / kPose.size(); n > 1) {
     source.fail("a .log of {} poses; a transform is one: keep its four rows", n);
   }

@@ -23,7 +23,7 @@ std::size_t width_of(std::string_view layout) {
 }
 
 /// What three neighboring columns hold, over all rows.
-struct Triple {
+struct ColumnStatistics {
   double lowest = 0.0, highest = 0.0;
   bool fractions = false;
   bool unit_or_zero = true;  ///< the length of every row is 1 (as far as few digits say) or 0
@@ -52,7 +52,7 @@ Channel measure_channel(const NumberTable& table, std::size_t column) {
 }
 
 /// Whether channels are alike, which those of colors are; of a few rows, or of one value throughout, nobody can say.
-void compare_channels(const NumberTable& table, std::size_t first, Triple& triple) {
+void compare_channels(const NumberTable& table, std::size_t first, ColumnStatistics& triple) {
   constexpr std::size_t kFewRows = 8;
   constexpr double kWhite8 = 255.0;
   if (table.rows() < kFewRows) return;
@@ -69,9 +69,9 @@ void compare_channels(const NumberTable& table, std::size_t first, Triple& tripl
   triple.one_scale = !(any_small && any_large);
 }
 
-Triple measure(const NumberTable& table, std::size_t first) {
+ColumnStatistics measure(const NumberTable& table, std::size_t first) {
   constexpr double kTolerance = 0.02;  // three numbers of two digits after the point
-  Triple triple;
+  ColumnStatistics triple;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     double sq_length = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -89,9 +89,9 @@ Triple measure(const NumberTable& table, std::size_t first) {
   return triple;
 }
 
-bool may_be_color(const Triple& t) {
-  constexpr double kHighest = 65535.0;
-  if (t.lowest < 0.0 || t.highest > kHighest || t.highest == 0.0) return false;
+bool may_be_color(const ColumnStatistics& t) {
+  constexpr double kHighestColor = 65535.0;
+  if (t.lowest < 0.0 || t.highest > kHighestColor || t.highest == 0.0) return false;
   return t.alike && !(t.unit_or_zero && t.fractions);  // colors would not all have length 1
 }
 
@@ -108,7 +108,7 @@ bool fits(const NumberTable& table, std::string_view layout) {
   if (width_of(layout) + 3 != table.columns) return false;
   std::size_t column = 3;
   for (const char role : layout) {
-    const Triple triple = width_of(role) == 3 ? measure(table, column) : Triple();
+    const ColumnStatistics triple = width_of(role) == 3 ? measure(table, column) : ColumnStatistics();
     const bool fit = role == 'r'   ? may_be_color(triple) && (layout == "r" || triple.one_scale)
                      : role == 'n' ? triple.unit_or_zero
                      : role == 'a' ? may_be_alpha(table, column)

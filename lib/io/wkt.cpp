@@ -9,8 +9,8 @@ namespace {
 // Real coordinate systems nest about ten deep.
 constexpr int kMaxDepth = 40;
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
-bool is_word(char c) { return !is_blank(c) && std::string_view(",[]()\"").find(c) == std::string_view::npos; }
+bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+bool is_word_character(char c) { return !is_space(c) && std::string_view(",[]()\"").find(c) == std::string_view::npos; }
 
 class Parser {
  public:
@@ -32,7 +32,7 @@ class Parser {
   bool item(WktNode& parent, int depth) {
     skip_blanks();
     if (take('"')) return quoted(parent.values.emplace_back());
-    std::string word(text_.begin(), std::ranges::find_if_not(text_, is_word));
+    std::string word(text_.begin(), std::ranges::find_if_not(text_, is_word_character));
     if (word.empty()) return false;
     text_.remove_prefix(word.size());
     const bool square = take('[');
@@ -67,7 +67,7 @@ class Parser {
     return true;
   }
   void skip_blanks() {
-    while (!text_.empty() && is_blank(text_.front())) text_.remove_prefix(1);
+    while (!text_.empty() && is_space(text_.front())) text_.remove_prefix(1);
   }
 
   std::string_view text_;

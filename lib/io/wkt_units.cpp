@@ -12,7 +12,7 @@ namespace cmap {
 namespace {
 
 constexpr double kDegree_rad = 0.017453292519943295;
-const std::initializer_list<std::string_view> kVertical{"VERT_CS", "VERTCS", "VERTCRS", "VERTICALCRS"};
+const std::initializer_list<std::string_view> kVerticalNodes{"VERT_CS", "VERTCS", "VERTCRS", "VERTICALCRS"};
 
 /// A unit among a node's own children: not of the geographic system that a projection starts from.
 const WktNode* unit_of(const WktNode& node) {
@@ -77,7 +77,7 @@ void read_horizontal(const WktNode& system, CoordinateUnits& units) {
   read_length(unit, units.horizontal_m, units);
   if (has_third_axis(system)) read_length(axis_unit(system, 2), units.vertical_m, units);
   // Some writers put the system of the heights inside.
-  if (const WktNode* heights = system.child(kVertical)) read_vertical(*heights, units);
+  if (const WktNode* heights = system.child(kVerticalNodes)) read_vertical(*heights, units);
 }
 
 /// The systems of x, y and z, which a compound or a bound one holds.
@@ -87,7 +87,7 @@ void read_system(const WktNode& system, CoordinateUnits& units) {
     for (const WktNode& part : system.children) read_system(part, units);
   } else if (system.is({"BOUNDCRS"})) {
     if (const WktNode* source = system.child({"SOURCECRS"})) read_system(*source, units);
-  } else if (system.is(kVertical)) {
+  } else if (system.is(kVerticalNodes)) {
     read_vertical(system, units);
   } else if (system.is({"PROJCS", "PROJCRS", "PROJECTEDCRS", "DERIVEDPROJCRS", "GEOCCS", "LOCAL_CS", "ENGCRS",
                         "ENGINEERINGCRS"}) ||

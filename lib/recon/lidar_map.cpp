@@ -9,14 +9,14 @@
 namespace cmap {
 namespace {
 
-constexpr std::size_t kPointChunk = 4096;
+constexpr std::size_t kScanChunk = 4096;
 
 /// World positions of a scan's points, none where there is no pose.
 Array<std::optional<Eigen::Vector3d>> placed(const LidarScan& scan, const Trajectory& world_T_imu,
                                              const Eigen::Isometry3d& T_imu_lidar, const LidarMapOptions& options,
                                              double max_gap_s) {
   Array<std::optional<Eigen::Vector3d>> world(scan.positions.size());
-  parallel_chunks(scan.positions.size(), kPointChunk, [&](std::size_t begin, std::size_t end) {
+  parallel_chunks(scan.positions.size(), kScanChunk, [&](std::size_t begin, std::size_t end) {
     double time_s = scan.timestamp_s;
     std::optional<StampedPose> pose = pose_at(world_T_imu, time_s, max_gap_s);
     for (std::size_t i = begin; i < end; ++i) {

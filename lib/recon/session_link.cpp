@@ -14,7 +14,7 @@
 namespace cmap {
 namespace {
 
-constexpr std::size_t kFewestPixels = 100, kMostPixels = 40'000;
+constexpr std::size_t kFewestSharedPixels = 100, kMostPixels = 40'000;
 
 Eigen::Vector3d world_point(const PlacedSession& placed, std::size_t frame, const Eigen::Vector3f& point) {
   return placed.T_world_camera[frame] * (placed.scale * point.cast<double>());
@@ -114,7 +114,7 @@ std::optional<SessionLink> link_sessions(const SessionPredictions& a, const Plac
         [&](const Eigen::Vector3f& p) { return world_point(placed_b, frame.b, p); }, pairs);
   }
   thin_out(pairs);
-  if (pairs.a.size() < kFewestPixels) {
+  if (pairs.a.size() < kFewestSharedPixels) {
     reason = fmt::format("{} pixels of shared frames are good in both", pairs.a.size());
     return std::nullopt;
   }

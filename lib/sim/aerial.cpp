@@ -96,19 +96,19 @@ class StripBuilder {
            !on_field_edge(at, reach) && use_at(at) == LandUse::kMeadow;
   }
 
-  const Field* field_at(const Eigen::Vector2f& at) const {
-    for (const Field& f : land_.fields) {
+  const FarmField* field_at(const Eigen::Vector2f& at) const {
+    for (const FarmField& f : land_.fields) {
       if (at.x() >= f.x0 && at.x() < f.x1 && at.y() >= f.y0 && at.y() < f.y1) return &f;
     }
     return nullptr;
   }
   LandUse use_at(const Eigen::Vector2f& at) const {
-    const Field* field = field_at(at);
+    const FarmField* field = field_at(at);
     return field == nullptr ? LandUse::kCrop : field->use;
   }
   /// Tracks run along the edges.
   bool on_field_edge(const Eigen::Vector2f& at, float reach) const {
-    const Field* field = field_at(at);
+    const FarmField* field = field_at(at);
     return field == nullptr || at.x() - field->x0 < reach || field->x1 - at.x() < reach;
   }
 
@@ -132,7 +132,8 @@ class StripBuilder {
       const float side = random_.chance(0.5F) ? 1.0F : -1.0F;
       return {anywhere.x(), land_.river_y(anywhere.x()) + side * random_.between(1.5F, 2.6F) * Land::kRiverHalf_m};
     }
-    const Field& field = land_.fields[static_cast<std::size_t>(random_.below(static_cast<int>(land_.fields.size())))];
+    const FarmField& field =
+        land_.fields[static_cast<std::size_t>(random_.below(static_cast<int>(land_.fields.size())))];
     if (kind == 2 && !sites_.empty()) {
       const Eigen::Vector2f& site = sites_[static_cast<std::size_t>(random_.below(static_cast<int>(sites_.size())))];
       return site + Eigen::Vector2f(random_.between(-22.0F, 22.0F), random_.between(-18.0F, 18.0F));

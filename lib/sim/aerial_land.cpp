@@ -23,7 +23,7 @@ struct Crop {
   float row_m;
 };
 
-Surface field_surface(SceneRandom& random, const Field& field) {
+Surface field_surface(SceneRandom& random, const FarmField& field) {
   constexpr std::array<Crop, 8> kCrops = {{{{0.80F, 0.68F, 0.38F}, {0.60F, 0.48F, 0.28F}, 1.2F},    // wheat
                                            {{0.84F, 0.76F, 0.18F}, {0.42F, 0.46F, 0.16F}, 1.6F},    // rape
                                            {{0.28F, 0.46F, 0.17F}, {0.40F, 0.34F, 0.22F}, 1.9F},    // maize
@@ -54,7 +54,7 @@ Surface field_surface(SceneRandom& random, const Field& field) {
 }
 
 /// Land within a field, in cells that match those of its neighbors.
-void add_field(SceneBuilder& builder, SceneRandom& random, const Land& land, const Field& field) {
+void add_field(SceneBuilder& builder, SceneRandom& random, const Land& land, const FarmField& field) {
   const std::uint32_t surface = builder.add(field_surface(random, field));
   const auto at = [&](int i, int j) {
     const float x = std::min(field.x0 + static_cast<float>(i) * Land::kCell_m, field.x1);
@@ -97,7 +97,7 @@ void add_roads(SceneBuilder& builder, SceneRandom& random, const Land& land) {
   gravel.material = Material::kGravel;
   gravel.base = {0.66F, 0.60F, 0.50F};
   std::vector<float> tracks;
-  for (const Field& field : land.fields) tracks.push_back(field.x1);
+  for (const FarmField& field : land.fields) tracks.push_back(field.x1);
   std::sort(tracks.begin(), tracks.end());
   tracks.erase(std::unique(tracks.begin(), tracks.end()), tracks.end());
   for (const float x : tracks) {
@@ -179,7 +179,7 @@ void Land::divide(SceneRandom& random) {
 }
 
 void add_land(SceneBuilder& builder, SceneRandom& random, const Land& land) {
-  for (const Field& field : land.fields) add_field(builder, random, land, field);
+  for (const FarmField& field : land.fields) add_field(builder, random, land, field);
   add_roads(builder, random, land);
   add_water(builder, random, land);
 }

@@ -10,7 +10,7 @@ namespace cmap {
 enum class LandUse { kCrop, kMeadow, kWood };
 
 /// A rectangle of land, edges on multiples of Land::kCell_m.
-struct Field {
+struct FarmField {
   float x0, x1, y0, y1;  ///< m
   LandUse use;
 };
@@ -26,7 +26,7 @@ class Land {
   float half_x, half_y;  ///< half the strip's size, m
   float road_y;          ///< center line
   float water_z;
-  std::vector<Field> fields;
+  std::vector<FarmField> fields;
 
   float height(float x, float y) const;
   float river_y(float x) const;

@@ -17,7 +17,7 @@ Six six(double gyro, double accelerometer) {
   return v;
 }
 
-Six normals(RandomStream random) {
+Six six_normals(RandomStream random) {
   Six v;
   for (double& x : v) x = random.normal();
   return v;
@@ -30,7 +30,7 @@ std::vector<Six> bias_walk(std::size_t n, const ImuOptions& o, std::uint64_t see
       six(o.gyro_bias_walk_radps2_per_sqrt_hz, o.accelerometer_bias_walk_mps3_per_sqrt_hz) / std::sqrt(o.rate_hz);
   std::vector<Six> bias(n);
   for (std::size_t i = 0; i < n; ++i) {
-    const Six drawn = normals(RandomStream(seed, kRandomImuBias, i));
+    const Six drawn = six_normals(RandomStream(seed, kRandomImuBias, i));
     bias[i] = i == 0 ? Six(first.cwiseProduct(drawn)) : Six(bias[i - 1] + step.cwiseProduct(drawn));
   }
   return bias;
@@ -59,7 +59,7 @@ std::vector<ImuSample> simulate_imu(const PoseSpline& path, const ImuOptions& o,
     for (std::size_t i = begin; i < end; ++i) {
       const double t = path.start_s() + static_cast<double>(i) / o.rate_hz;
       samples[i] = ideal_imu_sample(path.motion(t), t, o);
-      const Six error = bias[i] + white.cwiseProduct(normals(RandomStream(seed, kRandomImuWhite, i)));
+      const Six error = bias[i] + white.cwiseProduct(six_normals(RandomStream(seed, kRandomImuWhite, i)));
       samples[i].angular_rate_radps += error.head<3>();
       samples[i].specific_force_mps2 += error.tail<3>();
     }

@@ -2,11 +2,10 @@
 #include <numbers>
 
 #include "cmap/sim/lidar.hpp"
+#include "sim/degrees.hpp"
 
 namespace cmap {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 /// Angle of a rotor, reduced first: a time stamp of today times 100 turns per second would cost digits.
 double rotor_rad(double turns_per_s, double time_s, double phase_turns = 0.0) {

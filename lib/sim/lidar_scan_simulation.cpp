@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <numbers>
 #include <optional>
 
 #include "cmap/core/parallel.hpp"
 #include "cmap/sim/lidar.hpp"
 #include "cmap/sim/random_stream.hpp"
+#include "sim/degrees.hpp"
 #include "sim/option_descriptions.hpp"
 
 namespace cmap {
@@ -39,7 +39,6 @@ bool detected(const LidarOptions& o, double reflectivity, double cos_incidence, 
 /// The echo of one shot from the LiDAR's place at that moment.
 std::optional<Return> shoot(const Scene& scene, const Eigen::Isometry3d& T_world_lidar, const LidarBeam& beam,
                             const LidarOptions& o, RandomStream random) {
-  constexpr double kRadPerDeg = std::numbers::pi / 180.0;
   Eigen::Vector3d direction = beam.direction;
   if (o.angular_noise_deg > 0.0) direction = deviated(direction, kRadPerDeg * o.angular_noise_deg, random);
   const Eigen::Vector3d ray = T_world_lidar.linear() * direction;

@@ -7,12 +7,11 @@
 #include <stdexcept>
 
 #include "cmap/sim/random_stream.hpp"
+#include "sim/degrees.hpp"
 #include "sim/option_descriptions.hpp"
 
 namespace cmap {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 /// 0 before 0, 1 after 1, without a jump of the first two derivatives.
 double smooth_step(double x) {

@@ -7,7 +7,7 @@
 
 namespace cmap {
 namespace {
-constexpr std::size_t kQueryChunk = 256;
+constexpr std::size_t kNeighborhoodChunk = 256;
 }
 
 Array<float> most_similar_color(const Bvh& index, const Array<ColorBlock>& index_colors, const PointBlocks& queries,
@@ -16,7 +16,7 @@ Array<float> most_similar_color(const Bvh& index, const Array<ColorBlock>& index
   Array<float> best(queries.size);
   const BoxLevels boxes = color_boxes(index_colors);
   const Queries moved{queries, queries.origin - index.points.origin};
-  parallel_chunks(queries.blocks.size(), kQueryChunk, [&](std::size_t begin, std::size_t end) {
+  parallel_chunks(queries.blocks.size(), kNeighborhoodChunk, [&](std::size_t begin, std::size_t end) {
     kernels().most_similar_color({index, index_colors, boxes}, {moved, query_colors, nearest}, search, begin, end,
                                  best);
   });
@@ -27,7 +27,7 @@ NeighborhoodShape neighborhood_shapes(const Bvh& cloud, double radius_m, double 
   if (!(radius_m > 0.0)) throw std::invalid_argument("neighborhood_shapes: the radius must be positive");
   const std::size_t n = cloud.points.size;
   NeighborhoodShape shape{Array<std::uint32_t>(n), Array<double>(n), Array<std::uint8_t>(n)};
-  parallel_chunks(cloud.points.blocks.size(), kQueryChunk, [&](std::size_t begin, std::size_t end) {
+  parallel_chunks(cloud.points.blocks.size(), kNeighborhoodChunk, [&](std::size_t begin, std::size_t end) {
     kernels().neighborhood_shapes(cloud, radius_m, file_step_m, begin, end, shape);
   });
   return shape;
