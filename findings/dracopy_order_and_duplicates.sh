@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # DracoPy 2.2.0: a point cloud comes back in another order; without colors equal points are merged, and the steps are not those stated.
-# Errors or labels kept beside the cloud then belong to other points (preserve_order=True keeps them). Its page gives 11 bits as the
+# Errors or labels kept beside the cloud then belong to other points (preserve_order=True keeps them). Its docstring gives 11 bits as the
 # number of steps on the longest side; it is 14: 6 cm on a map of 1 km, on z too.
 set -euo pipefail
 folder=$(mktemp -d)

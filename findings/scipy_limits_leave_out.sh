@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # scipy 1.17.1 and pykdtree 1.4.3: query() leaves out a neighbor at exactly distance_upper_bound; query_ball_point() counts it.
-# "Within this distance", the pages say of both. On maps of a grid whole rows lie at the limit: a floor of 1/16 m steps that is 1/16 m
-# too high has a recall of 0 at the limit 1/16 m by query(), of 1 by query_ball_point(), count_neighbors() and scikit-learn 1.9.1.
+# Both pages say "within". On maps of a grid whole rows lie at the limit: a floor of 1/16 m steps that is 1/16 m too high has a recall
+# of 0 at the limit 1/16 m by query(), of 1 by query_ball_point() and scikit-learn 1.9.1.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
