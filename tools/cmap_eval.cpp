@@ -145,7 +145,7 @@ void append(const std::vector<cmap::Warning>& more, std::vector<cmap::Warning>& 
 /// The poses of a file, or where the scanner of a capture was.
 std::vector<Eigen::Vector3d> sensor_positions(const std::string& path, std::vector<cmap::Warning>& warnings) {
   if (std::filesystem::is_directory(path)) {
-    const cmap::Capture capture = cmap::open_capture(path);
+    const cmap::Capture capture = cmap::open_capture(path, {.images = cmap::Want::kNo, .imu = cmap::Want::kNo});
     append(capture.warnings, warnings);
     return cmap::scanner_positions(capture);
   }
