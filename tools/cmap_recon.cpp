@@ -36,9 +36,13 @@ constexpr const char* kExample =
     "\n"
     "  cmap_recon capture --check\n"
     "\n"
-    "Exit codes: 0 done; 2 wrong usage or configuration; 3 an input is missing or malformed, or --check found a "
-    "fault;\n"
-    "4 the capture does not support a map: fewer than half of its sessions can be placed; 70 internal error.";
+    "--check prints a line for each fault (what ends a run, is left out of it or contradicts another file) and each\n"
+    "warning (what a run goes on with), with file, place and reason.\n"
+    "\n"
+    "Exit codes: 0 done, or --check found no fault; 2 wrong usage or configuration; 3 an input is missing or\n"
+    "malformed, or --check found a fault; 4 the capture does not support a map: fewer than half of its sessions can "
+    "be\n"
+    "placed; 70 internal error.";
 
 struct Arguments {
   std::string capture, output, preset = "default", config, stop_after = "fusion", reference, figure;
@@ -52,10 +56,7 @@ struct Arguments {
 void add_options(CLI::App& app, Arguments& a) {
   app.add_option("CAPTURE", a.capture, "folder of a capture")->type_name("DIR");
   app.add_option("-o,--output", a.output, "folder for the results; made if need be")->type_name("DIR");
-  app.add_flag(
-      "--check", a.check,
-      "list all that is missing or odd in CAPTURE, and write nothing: fault: what ends a run or is left out of\n"
-      "it, and contradictions (exit code 3); warning: what a run goes on with");
+  app.add_flag("--check", a.check, "list all that is missing or odd in CAPTURE at once; writes nothing");
   app.add_option("--evaluate", a.reference, "reference map: also evaluation.json and evaluation.png")->type_name("REF");
   app.add_option("--figure", a.figure, "the sessions from above after each stage: .png, .jpg, .tif")->type_name("FILE");
   app.add_option("--registration", a.registration, "prefusion (none), normal, paper or robust [robust]")
