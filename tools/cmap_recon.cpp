@@ -140,24 +140,28 @@ void deliver(const Arguments& a, const cmap::Reconstruction& r, const cmap::Reco
   files.commit();
 }
 
-/// Results must not become inputs of the next run, nor replace what lies there.
-void refuse_inside_capture(const std::string& given, const fs::path& folder, const Arguments& a) {
-  const fs::path capture = fs::weakly_canonical(a.capture), output = fs::weakly_canonical(folder / "");
-  const fs::path within = output.lexically_relative(capture);
-  const std::string first = within.empty() ? ".." : within.begin()->string();
-  const bool is_input =
-      first == "." || first == "images" || first == "lidar" || first == "predictions" || first == "truth";
-  if (!is_input) return;
-  throw cmap::UsageError(fmt::format("{}: lies in the capture that is read; choose another folder", given));
+/// Results must not become inputs of the next run, nor replace what lies there. Other folders in the capture's are
+/// free.
+void refuse_inside_capture(const Arguments& a, const std::string& result) {
+  fs::path place = fs::weakly_canonical(result);
+  if (!place.has_filename()) place = place.parent_path();  // "name/" is "name"
+  const std::string within = place.lexically_relative(fs::weakly_canonical(a.capture)).begin()->string();
+  for (const char* name : {".", "images", "lidar", "predictions", "truth"}) {
+    if (within != name) continue;
+    throw cmap::UsageError(fmt::format("{}: lies in the capture that is read; choose another place", result));
+  }
 }
 
 void refuse_own_inputs(const Arguments& a) {
-  const fs::path folder(a.output);
-  refuse_inside_capture(a.output, folder, a);
-  std::vector<std::string> outputs{a.figure};
+  refuse_inside_capture(a, a.output);
+  std::vector<std::string> outputs;
   for (const char* name :
        {"map.ply", "trajectory.tum", "sessions.json", "report.json", "evaluation.json", "evaluation.png"}) {
-    outputs.push_back((folder / name).string());
+    outputs.push_back((fs::path(a.output) / name).string());
+  }
+  if (!a.figure.empty()) {
+    refuse_inside_capture(a, a.figure);
+    outputs.push_back(a.figure);
   }
   cmap::refuse_overwriting({a.reference, a.config}, outputs);
 }
@@ -205,6 +209,8 @@ void remove_stale_session_maps(const Arguments& a, const cmap::Capture& capture,
   }
 }
 
+std::string counted(std::size_t n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); }
+
 ExitCode check(const Arguments& a, const cmap::ReconstructionOptions& options) {
   if (a.capture.empty()) throw cmap::UsageError("CAPTURE is required");
   const cmap::CaptureCheck found = [&] {
@@ -216,8 +222,8 @@ ExitCode check(const Arguments& a, const cmap::ReconstructionOptions& options) {
   for (const std::string& fault : found.faults) text += fmt::format("fault: {}\n", fault);
   for (const std::string& warning : found.warnings) text += fmt::format("warning: {}\n", warning);
   if (!a.common.quiet) {
-    text += fmt::format("{} faults, {} warnings{}{}\n", found.faults.size(), found.warnings.size(),
-                        found.summary.empty() ? "" : ": ", found.summary);
+    text += fmt::format("{}, {}{}{}\n", counted(found.faults.size(), "fault"),
+                        counted(found.warnings.size(), "warning"), found.summary.empty() ? "" : ": ", found.summary);
   }
   cmap::print(text);
   return found.faults.empty() ? ExitCode::kDone : ExitCode::kInput;

@@ -31,7 +31,7 @@ class Check(CaptureCase):
             self.assertTrue(text.startswith(parts[0]), f"{parts[0]} expected: {text}")
             for part in parts[1:]:
                 self.assertIn(part, text)
-        self.assertIn(f"{len(expected)} faults, ", lines[-1])
+        self.assertTrue(lines[-1].startswith(f"{len(expected)} fault{'s' if len(expected) > 1 else ''}, "), lines[-1])
         return lines
 
     def edit(self, name, old, new):

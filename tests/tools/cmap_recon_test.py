@@ -538,6 +538,9 @@ class Recon(CaptureCase):
         link = self.folder / "link"
         link.symlink_to(self.capture)
         self.assertIn("link: lies in the capture", self.recon(output=link, code=USAGE))
+        for name in ("images/000000.jpg", "truth/preview.png"):
+            message = self.recon("--figure", self.capture / name, code=USAGE)
+            self.assertIn(f"{name}: lies in the capture that is read", message)
         self.assertEqual(self.contents(self.capture), self.contents(self.simulated))
         self.recon("--stop-after", "prefusion", output=self.capture / "map")
 
