@@ -53,7 +53,7 @@ std::uint64_t CsvTable::whole_number(std::size_t column) const {
   return value;
 }
 
-void CsvTable::for_each_row(const Faults& faults, const std::function<void()>& read_row) {
+bool CsvTable::for_each_row(const Faults& faults, const std::function<void()>& read_row) {
   constexpr std::size_t kMostFaults = 10;
   std::size_t n_faults = 0;
   for (bool is_row = true; is_row;) {
@@ -63,11 +63,12 @@ void CsvTable::for_each_row(const Faults& faults, const std::function<void()>& r
       if (is_row) read_row();
     });
     if (is_good) continue;
-    if (lines_.source().position() == place) return;  // a line too long to step over
+    if (lines_.source().position() == place) return false;  // a line too long to step over
     if (++n_faults < kMostFaults) continue;
     faults.attempt([&] { lines_.fail("{} rows are faulty so far; the rest was not read", n_faults); });
-    return;
+    return false;
   }
+  return n_faults == 0;
 }
 
 void IncreasingTimes::add(const LineReader& lines, double time_s) {

@@ -18,8 +18,9 @@ class CsvTable {
 
   /// The next row that is not blank; false at the end. Throws InputError for another number of cells.
   bool next();
-  /// Calls read_row() for each of the rows that are left. What is wrong with a row goes to `faults`, of ten at most.
-  void for_each_row(const Faults& faults, const std::function<void()>& read_row);
+  /// Calls read_row() for each of the rows that are left. What is wrong with a row goes to `faults`, of ten at most;
+  /// true if nothing is.
+  bool for_each_row(const Faults& faults, const std::function<void()>& read_row);
   std::string_view cell(std::size_t column) const { return cells_[column]; }
   /// The cell as a finite number, or as a whole one; throws InputError naming line and column for anything else.
   double number(std::size_t column) const;

@@ -19,7 +19,8 @@ int original_size(const CsvTable& table, std::size_t column) {
   return static_cast<int>(size);
 }
 
-std::vector<PredictionFrame> read_frames(const fs::path& path, const Faults& faults) {
+/// As many as there are in the arrays, where that is known; none where a row is faulty.
+std::vector<PredictionFrame> read_frames(const fs::path& path, std::size_t frame_count, const Faults& faults) {
   if (!fs::exists(path)) {
     throw InputError(path.string() + ": no such file; the times of the session's frames expected there");
   }
@@ -27,7 +28,7 @@ std::vector<PredictionFrame> read_frames(const fs::path& path, const Faults& fau
   CsvTable table(source, {"index", "timestamp_s", "image_name", "orig_w", "orig_h"});
   IncreasingTimes times;
   std::vector<PredictionFrame> frames;
-  table.for_each_row(faults, [&] {
+  const bool is_good = table.for_each_row(faults, [&] {
     const std::size_t index = frames.size();
     PredictionFrame& frame = frames.emplace_back();
     frame.index = index;
@@ -38,6 +39,10 @@ std::vector<PredictionFrame> read_frames(const fs::path& path, const Faults& fau
     frame.original_width = original_size(table, 3);
     frame.original_height = original_size(table, 4);
   });
+  if (frame_count > 0 && frames.size() != frame_count) {
+    source.fail("{} frames, but {} in the arrays", frames.size(), frame_count);
+  }
+  if (!is_good) frames.clear();
   return frames;
 }
 
@@ -107,13 +112,7 @@ SessionPredictions read_session_predictions(const fs::path& folder_or_npz, const
   std::size_t frame_count = 0;
   const bool has_depth = faults.attempt([&] { read_depth(store, session, frame_count); });
   if (!files.meta.empty()) check_meta(files.meta, session, frame_count, faults);
-  faults.attempt([&] {
-    session.frames = read_frames(files.frames, faults);
-    if (frame_count > 0 && session.frames.size() != frame_count) {
-      throw InputError(fmt::format("{}: {} frames, but {} in the arrays", files.frames.string(), session.frames.size(),
-                                   frame_count));
-    }
-  });
+  faults.attempt([&] { session.frames = read_frames(files.frames, frame_count, faults); });
   read_other_arrays(store, session, frame_count, has_depth, faults);
   for (const std::string& name : store.python_members()) {
     session.warnings.push_back({"skipped_member", fmt::format("{}: {} holds pickled Python objects and was skipped",

@@ -23,36 +23,43 @@ CaptureParts parts_to_check(const fs::path& folder, const ReconstructionOptions&
 }
 
 void check_needed(const Capture& capture, CaptureCheck& check) {
-  const fs::path lio = capture.folder / "lio.tum", predictions = capture.folder / "predictions";
-  if (!fs::exists(lio))
-    check.faults.push_back(
-        fmt::format("{}: no such file; LiDAR-inertial poses (world_T_imu) are needed", lio.string()));
-  if (capture.sessions.empty()) {
-    check.faults.push_back(
-        fmt::format("{}: no sessions of predictions: folders, or NAME.npz with NAME.frames.csv", predictions.string()));
-  }
+  const std::string lio = (capture.folder / "lio.tum").string();
+  const std::string predictions = (capture.folder / "predictions").string();
+  if (!fs::exists(lio)) check.faults.push_back(lio + ": no such file; LiDAR-inertial poses (world_T_imu) are needed");
+  if (!capture.sessions.empty()) return;
+  check.faults.push_back(predictions + ": no sessions of predictions: folders, or NAME.npz with NAME.frames.csv");
 }
 
-void check_scans(const Capture& capture, const ReconstructionOptions& options, const ProgressSink& progress,
-                 CaptureCheck& check) {
+/// The scans that have a pose at their time.
+void check_scan_times(const Capture& capture, double max_gap_s, CaptureCheck& check) {
+  const std::vector<StampedFile>& scans = capture.scans;
+  const Trajectory& poses = capture.lio;
+  if (scans.empty() || poses.empty()) return;
+  const auto n_missing = std::ranges::count_if(
+      scans, [&](const StampedFile& scan) { return !pose_at(poses, scan.time_s, max_gap_s).has_value(); });
+  if (n_missing == 0) return;
+  const bool is_any = n_missing < std::ssize(scans);
+  (is_any ? check.warnings : check.faults)
+      .push_back(
+          fmt::format("{}: {} of {} scans have no LiDAR-inertial pose at their time: scans from {:.3f} to {:.3f} s, "
+                      "poses from {:.3f} to {:.3f} s, gaps of at most {:g} s (max_gap_s)",
+                      (capture.folder / "lidar.csv").string(), n_missing, scans.size(), scans.front().time_s,
+                      scans.back().time_s, poses.front().time_s, poses.back().time_s, max_gap_s));
+}
+
+void check_scans(const Capture& capture, const ProgressSink& progress, CaptureCheck& check) {
   const Faults faults(check.faults);
-  std::size_t n_points = 0, n_placed = 0, i = 0;
+  std::size_t n_read = 0, n_points = 0, i = 0;
   for (const StampedFile& file : capture.scans) {
     if (progress) progress("scans", static_cast<double>(i++) / static_cast<double>(capture.scans.size()));
-    faults.attempt([&] { n_points += read_lidar_scan(file.path, file.time_s).positions.size(); });
-    if (pose_at(capture.lio, file.time_s, options.prefusion.max_gap_s)) ++n_placed;
+    faults.attempt([&] {
+      n_points += read_lidar_scan(file.path, file.time_s).positions.size();
+      ++n_read;
+    });
   }
-  const std::string table = (capture.folder / "lidar.csv").string();
-  const std::size_t n = capture.scans.size();
-  if (n > 0 && n_points == 0) check.faults.push_back(fmt::format("{}: none of the {} scans has a point", table, n));
-  if (n == 0 || capture.lio.empty() || n_placed == n) return;
-  const std::string text = fmt::format(
-      "{}: {} of {} scans have no LiDAR-inertial pose at their time: scans from {:.3f} to {:.3f} s, poses from {:.3f} "
-      "to "
-      "{:.3f} s, gaps of at most {:g} s (max_gap_s)",
-      table, n - n_placed, n, capture.scans.front().time_s, capture.scans.back().time_s, capture.lio.front().time_s,
-      capture.lio.back().time_s, options.prefusion.max_gap_s);
-  (n_placed == 0 ? check.faults : check.warnings).push_back(text);
+  if (n_read == 0 || n_points > 0) return;
+  check.faults.push_back(
+      fmt::format("{}: none of the {} scans has a point", (capture.folder / "lidar.csv").string(), n_read));
 }
 
 }  // namespace
@@ -71,7 +78,8 @@ CaptureCheck check_capture(const fs::path& folder, const ReconstructionOptions& 
     if (progress) progress("sessions", static_cast<double>(i) / static_cast<double>(capture.sessions.size()));
     sessions.add(i);
   }
-  check_scans(capture, options, progress, check);
+  check_scan_times(capture, options.prefusion.max_gap_s, check);
+  check_scans(capture, progress, check);
   check.summary = fmt::format("{} sessions of {} frames, {} poses, {} scans, {} pictures", capture.sessions.size(),
                               sessions.frames(), capture.lio.size(), capture.scans.size(), capture.images.size());
   return check;

@@ -82,8 +82,7 @@ void SessionCheck::compare_with_images(const std::string& name, const SessionPre
   const PredictionFrame& first = session.frames.front();
   if (camera.width > 0 && (first.original_width != camera.width || first.original_height != camera.height)) {
     check_.warnings.push_back(
-        fmt::format("{}: its pictures were {} x {} pixels (orig_w, orig_h), but the camera of "
-                    "capture.json has {} x {}",
+        fmt::format("{}: its pictures were {} x {} pixels (orig_w, orig_h), but capture.json's camera has {} x {}",
                     name, first.original_width, first.original_height, camera.width, camera.height));
   }
   const bool is_known = std::ranges::any_of(
@@ -99,10 +98,8 @@ void SessionCheck::compare_with_scans(const std::string& name, const SessionPred
   const bool any = std::ranges::any_of(
       capture_.scans, [&](const StampedFile& scan) { return scan.time_s >= first_s && scan.time_s <= last_s; });
   if (any) return;
-  check_.warnings.push_back(
-      fmt::format("{}: no scan between {:.3f} and {:.3f} s, where its frames are (lidar_margin_s: "
-                  "{:g} s); it stays where the poses put it",
-                  name, first_s, last_s, options_.lidar.margin_s));
+  check_.warnings.push_back(fmt::format(
+      "{}: no scan at its time, from {:.3f} to {:.3f} s; it stays where the poses put it", name, first_s, last_s));
 }
 
 }  // namespace cmap

@@ -78,13 +78,13 @@ class Check(CaptureCase):
     def test_scans_that_miss_a_session(self):
         lines_kept(self.capture / "lidar.csv", lambda row: float(row.split(",")[0]) < self.times(3)[0] - 2)
         lines, _ = self.check(code=DONE)
-        self.assertIn("warning: predictions/session_0003: no scan between", lines[0])
+        self.assertIn("warning: predictions/session_0003: no scan at its time", lines[0])
 
     def test_pictures_of_another_camera(self):
         self.change_camera(width=320, K=[110, 110, 160, 60])
         lines, _ = self.check(code=DONE)
         self.assertIn("its pictures were 160 x 120 pixels", lines[0])
-        self.assertIn("but the camera of capture.json has 320 x 120", lines[0])
+        self.assertIn("but capture.json's camera has 320 x 120", lines[0])
 
     def test_usage(self):
         result = subprocess.run([PROGRAM, "--check"], capture_output=True, text=True)
@@ -151,10 +151,8 @@ class Check(CaptureCase):
         swapped(self.capture / "lidar.csv", 5)
         swapped(self.capture / "imu.csv", 9)
         swapped(self.session(2) / "frames.csv", 2, column=1)
-        lines = self.faults(("lidar.csv: line 7: ", "is not after"), ("imu.csv: line 11: ", "is not after"),
-                            ("predictions/session_0002/frames.csv: line 4: ", "is not after"),
-                            ("predictions/session_0002: frame 1", "images.csv has this picture at"))
-        self.assertIn("warning: ", lines[4])
+        self.faults(("lidar.csv: line 7: ", "is not after"), ("imu.csv: line 11: ", "is not after"),
+                    ("predictions/session_0002/frames.csv: line 4: ", "is not after"))
 
     def test_06_clocks_of_frames(self):
         times_moved(self.session(1) / "frames.csv", 1, 1e6)
@@ -258,8 +256,9 @@ class Check(CaptureCase):
     def test_19_scans_of_another_clock(self):
         times_moved(self.capture / "lidar.csv", 0, 1e9)
         self.edit("capture.json", '"image_s": 0', '"image_s": "0"')
-        self.faults(("capture.json: time_offset.image_s: ", "is no finite number"),
-                    ("lidar.csv: 61 of 61 scans have no LiDAR-inertial pose", "scans from 1000000000.000"))
+        lines = self.faults(("capture.json: time_offset.image_s: ", "is no finite number"),
+                            ("lidar.csv: 61 of 61 scans have no LiDAR-inertial pose", "scans from 1000000000.000"))
+        self.assertEqual(sum("no scan at its time" in line for line in lines), 4)
 
     def test_20_rows_of_tables(self):
         self.edit("images.csv", "images/000004.jpg", "")
