@@ -98,7 +98,7 @@ TEST(OutputFolder, SomebodysDataAreNotTouched) {
   EXPECT_THAT(refusal(folder / "new"), HasSubstr("new.partial is there, and is not what a run that was stopped"));
   EXPECT_EQ(names_in(folder / "new.partial"), Names{"mine"});
   folder.write("file.partial", "mine");
-  EXPECT_THAT(refusal(folder / "file"), HasSubstr("file.partial: cannot be written: Not a directory"));
+  EXPECT_THAT(refusal(folder / "file"), HasSubstr("file: cannot be written: File exists"));
   EXPECT_EQ(read_bytes(folder / "file.partial"), "mine");
 }
 

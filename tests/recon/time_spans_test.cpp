@@ -10,7 +10,8 @@ using ::testing::HasSubstr;
 
 Trajectory poses_at(std::initializer_list<double> times_s) {
   Trajectory poses;
-  for (const double time_s : times_s) poses.push_back({time_s, {}, Eigen::Quaterniond::Identity()});
+  for (const double time_s : times_s)
+    poses.push_back({time_s, Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity()});
   return poses;
 }
 

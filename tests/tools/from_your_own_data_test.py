@@ -59,7 +59,7 @@ class FromYourOwnData(CaptureCase):
         (self.capture / "capture.json").write_text(calibration)
         check = re.search(r"`(cmap_recon capture --check)`", PAGE).group(1)
         self.assertEqual(self.run_as_written(check).stdout,
-                         "0 faults, 0 warnings: 3 sessions of 18 frames, 62 poses, 61 scans, 0 pictures\n")
+                         "0 faults, 0 warnings: 3 sessions of 18 frames, 85 poses, 84 scans, 0 pictures\n")
         self.assertEqual(self.run_as_written(commands[-1]).stderr, "")
         sessions = json.loads((self.folder / "map/sessions.json").read_text())["sessions"]
         self.assertEqual([session["name"] for session in sessions], ["a.npz", "b.npz", "c.npz"])
