@@ -516,7 +516,7 @@ class Recon(CaptureCase):
 
     def test_intrinsics_of_another_size(self):
         self.change(1, "intrinsic", lambda cameras: cameras * np.array([[4.0], [4.0], [1.0]]))
-        self.check_dropped(1, "are they of one of about 276 x 220? Multiply fx and cx by 0.25")
+        self.check_dropped(1, "are they of one of about 280 x 224? Multiply fx and cx by 0.25")
 
     def test_pictures_just_outside_their_range(self):
         def overstep(images):
