@@ -136,6 +136,7 @@ Capture open_capture(const fs::path& folder, const CaptureParts& parts, const Fa
     });
   }
   if (fs::exists(lio)) faults.attempt([&] { capture.lio = read_lio(lio, capture.warnings); });
+  if (parts.sessions == Want::kNo) return capture;
   faults.attempt([&] { capture.sessions = find_sessions(predictions, capture.warnings); });
   faults.attempt([&] { require_own_frames(predictions, capture.sessions); });
   return capture;

@@ -316,9 +316,10 @@ TEST(Capture, PartsThatNobodyWantsMayBeMissingOrBroken) {
   text.files.erase("images.csv");
   text.files["lidar.csv"] = "no table";
   text.files["imu.csv"] = "no table";
+  text.files["predictions"] = "no folder";
   const TempFolder folder;
   text.write_to(folder.path());
-  const Capture capture = open_capture(folder.path(), {.images = Want::kNo, .scans = Want::kNo, .imu = Want::kNo});
+  const Capture capture = open_capture(folder.path(), {Want::kNo, Want::kNo, Want::kNo, Want::kNo});
   EXPECT_TRUE(capture.images.empty() && capture.scans.empty() && capture.imu.empty());
   EXPECT_EQ(capture.lio.size(), 2U);
   EXPECT_TRUE(capture.warnings.empty());

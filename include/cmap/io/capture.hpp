@@ -59,9 +59,9 @@ enum class Want {
   kYes,
 };
 
-/// The parts of a capture that not everybody needs. Of an IMU and of poses none is no fault either way.
+/// The parts of a capture that not everybody needs. To have no IMU, poses or sessions is no fault either way.
 struct CaptureParts {
-  Want images = Want::kYes, scans = Want::kYes, imu = Want::kYes;
+  Want images = Want::kYes, scans = Want::kYes, imu = Want::kYes, sessions = Want::kYes;
 };
 
 /// Opens a capture. Rotations that deviate from one (largest entry of R^T R - I) are projected to SO(3), with a warning
