@@ -142,10 +142,13 @@ void append(const std::vector<cmap::Warning>& more, std::vector<cmap::Warning>& 
   warnings.insert(warnings.end(), more.begin(), more.end());
 }
 
+constexpr cmap::CaptureParts kWhereTheScannerWas{
+    .images = cmap::Want::kNo, .imu = cmap::Want::kNo, .sessions = cmap::Want::kNo};
+
 /// The poses of a file, or where the scanner of a capture was.
 std::vector<Eigen::Vector3d> sensor_positions(const std::string& path, std::vector<cmap::Warning>& warnings) {
   if (std::filesystem::is_directory(path)) {
-    const cmap::Capture capture = cmap::open_capture(path);
+    const cmap::Capture capture = cmap::open_capture(path, kWhereTheScannerWas);
     append(capture.warnings, warnings);
     return cmap::scanner_positions(capture);
   }

@@ -8,6 +8,7 @@
 #include "cmap/eval/protocol.hpp"
 #include "cmap/io/output_folder.hpp"
 #include "cmap/io/point_cloud_file.hpp"
+#include "cmap/recon/capture_check.hpp"
 #include "cmap/recon/reconstruction_report.hpp"
 #include "cmap/report/figure_module.hpp"
 #include "cmap/report/report.hpp"
@@ -25,28 +26,37 @@ namespace fs = std::filesystem;
 constexpr const char* kDescription =
     "Reconstructs a metric colored map from a capture: VGGT predictions in sessions of unknown scale, LiDAR scans and\n"
     "LiDAR-inertial poses. Pre-fusion by poses, registration of each session onto the LiDAR (Sim(3) with an expected\n"
-    "scale), pose graph, fusion. Writes map.ply, trajectory.tum (world_T_imu), sessions.json and report.json to DIR.";
+    "scale), pose graph, fusion. Writes map.ply, trajectory.tum (world_T_imu), sessions.json and report.json to DIR.\n"
+    "A capture of your own: docs/FROM_YOUR_OWN_DATA.md.";
 
 constexpr const char* kExample =
     "Example:\n"
     "  cmap_simulate small_town -o capture\n"
     "  cmap_recon capture -o map --evaluate capture/truth/map.ply\n"
     "\n"
-    "Exit codes: 0 done; 2 wrong usage or configuration; 3 an input is missing or malformed; 4 the capture does not\n"
-    "support a map: fewer than half of its sessions can be placed; 70 internal error.";
+    "  cmap_recon capture --check\n"
+    "\n"
+    "--check prints a line for each fault (what ends a run, is left out of it or contradicts another file) and each\n"
+    "warning (what a run goes on with), with file, place and reason.\n"
+    "\n"
+    "Exit codes: 0 done, or --check found no fault; 2 wrong usage or configuration; 3 an input is missing or\n"
+    "malformed, or --check found a fault; 4 the capture does not support a map: fewer than half of its sessions can "
+    "be\n"
+    "placed; 70 internal error.";
 
 struct Arguments {
   std::string capture, output, preset = "default", config, stop_after = "fusion", reference, figure;
   std::vector<std::string> settings;
   std::string registration;
   int only_session = -1;
-  bool resume = false, session_maps = false, print_options = false;
+  bool check = false, resume = false, session_maps = false, print_options = false;
   cmap::CommonArguments common;
 };
 
 void add_options(CLI::App& app, Arguments& a) {
   app.add_option("CAPTURE", a.capture, "folder of a capture")->type_name("DIR");
   app.add_option("-o,--output", a.output, "folder for the results; made if need be")->type_name("DIR");
+  app.add_flag("--check", a.check, "list all that is missing or odd in CAPTURE at once; writes nothing");
   app.add_option("--evaluate", a.reference, "reference map: also evaluation.json and evaluation.png")->type_name("REF");
   app.add_option("--figure", a.figure, "the sessions from above after each stage: .png, .jpg, .tif")->type_name("FILE");
   app.add_option("--registration", a.registration, "prefusion (none), normal, paper or robust [robust]")
@@ -130,8 +140,35 @@ void deliver(const Arguments& a, const cmap::Reconstruction& r, const cmap::Reco
   files.commit();
 }
 
+/// Results must not become inputs of the next run, nor replace what lies there. Other folders in the capture's are
+/// free.
+void refuse_inside_capture(const Arguments& a, const std::string& result) {
+  fs::path place = fs::weakly_canonical(result);
+  if (!place.has_filename()) place = place.parent_path();  // "name/" is "name"
+  const std::string within = place.lexically_relative(fs::weakly_canonical(a.capture)).begin()->string();
+  for (const char* name : {".", "images", "lidar", "predictions", "truth"}) {
+    if (within != name) continue;
+    throw cmap::UsageError(fmt::format("{}: lies in the capture that is read; choose another place", result));
+  }
+}
+
+void refuse_own_inputs(const Arguments& a) {
+  refuse_inside_capture(a, a.output);
+  std::vector<std::string> outputs;
+  for (const char* name :
+       {"map.ply", "trajectory.tum", "sessions.json", "report.json", "evaluation.json", "evaluation.png"}) {
+    outputs.push_back((fs::path(a.output) / name).string());
+  }
+  if (!a.figure.empty()) {
+    refuse_inside_capture(a, a.figure);
+    outputs.push_back(a.figure);
+  }
+  cmap::refuse_overwriting({a.reference, a.config}, outputs);
+}
+
 void check_arguments(const Arguments& a) {
   if (a.capture.empty() || a.output.empty()) throw cmap::UsageError("CAPTURE and --output are required");
+  refuse_own_inputs(a);
   for (const auto& [given, option] :
        {std::pair(!a.reference.empty(), "--evaluate"), std::pair(!a.figure.empty(), "--figure"),
         std::pair(a.session_maps, "--session-maps")}) {
@@ -146,9 +183,11 @@ fs::path session_map_path(const Arguments& a, const std::string& session) {
   return fs::path(a.output) / "sessions" / (session + ".ply");
 }
 
-void make_output_folders(const Arguments& a, const cmap::Capture& capture) {
+/// For as long as the result lives, no other run writes into the folder.
+cmap::FolderLock make_output_folders(const Arguments& a, const cmap::Capture& capture) {
   const fs::path folder(a.output);
   cmap::make_folder(folder);
+  cmap::FolderLock lock(folder);
   if (a.session_maps) {
     cmap::make_folder(folder / "sessions");
     for (const fs::path& session : capture.sessions) {
@@ -158,6 +197,7 @@ void make_output_folders(const Arguments& a, const cmap::Capture& capture) {
   for (const char* name : {"map.ply", "trajectory.tum", "sessions.json", "report.json"}) {
     cmap::require_writable(folder / name);
   }
+  return lock;
 }
 
 /// Of an earlier run, of sessions that this one has no map of.
@@ -169,6 +209,26 @@ void remove_stale_session_maps(const Arguments& a, const cmap::Capture& capture,
   }
 }
 
+std::string counted(std::size_t n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); }
+
+ExitCode check(const Arguments& a, const cmap::ReconstructionOptions& options) {
+  if (a.capture.empty()) throw cmap::UsageError("CAPTURE is required");
+  const cmap::CaptureCheck found = [&] {
+    cmap::ProgressBar progress(!a.common.quiet);
+    return cmap::check_capture(a.capture, options, cmap::stage_from_name(a.stop_after),
+                               [&](std::string_view stage, double done) { progress.update(stage, done); });
+  }();
+  std::string text;
+  for (const std::string& fault : found.faults) text += fmt::format("fault: {}\n", fault);
+  for (const std::string& warning : found.warnings) text += fmt::format("warning: {}\n", warning);
+  if (!a.common.quiet) {
+    text += fmt::format("{}, {}{}{}\n", counted(found.faults.size(), "fault"),
+                        counted(found.warnings.size(), "warning"), found.summary.empty() ? "" : ": ", found.summary);
+  }
+  cmap::print(text);
+  return found.faults.empty() ? ExitCode::kDone : ExitCode::kInput;
+}
+
 ExitCode run(const CLI::App& app, const Arguments& a, const std::string& command) {
   const cmap::ThreadLimit limit(a.common.threads);
   const cmap::ReconstructionOptions options = resolve_options(a);
@@ -176,15 +236,17 @@ ExitCode run(const CLI::App& app, const Arguments& a, const std::string& command
     cmap::print(cmap::to_json(options).dump(2) + "\n");
     return ExitCode::kDone;
   }
+  if (a.check) return check(a, options);
   check_arguments(a);
   std::optional<cmap::PointCloudFile> reference;
   if (!a.reference.empty()) reference = cmap::read_point_cloud(a.reference, {.sha256 = true});
-  const cmap::Capture capture = cmap::open_capture(a.capture);
-  make_output_folders(a, capture);
+  const cmap::Stage last = cmap::stage_from_name(a.stop_after);
+  const cmap::Capture capture = cmap::open_capture(a.capture, cmap::parts_needed(options, last));
+  const cmap::FolderLock lock = make_output_folders(a, capture);
   cmap::ProgressBar progress(!a.common.quiet);
   cmap::OutputFiles files;
   cmap::ReconstructionRun how;
-  how.last = cmap::stage_from_name(a.stop_after);
+  how.last = last;
   if (app.get_option("--only-session")->count() > 0) how.only_session = static_cast<std::size_t>(a.only_session);
   how.stages = fs::path(a.output) / "stages";
   how.resume = a.resume;

@@ -87,11 +87,16 @@ std::vector<Eigen::Vector3d> scanner_positions(const Capture& capture, double ma
     const auto pose = pose_at(capture.lio, scan.time_s, max_gap_s);
     if (pose) positions.push_back(pose->position + pose->rotation * capture.calibration.T_imu_lidar.translation());
   }
-  if (positions.empty()) {
-    throw InputError(
-        fmt::format("{}: no scan has a LiDAR-inertial pose (lio.tum) at its time", capture.folder.string()));
+  if (!positions.empty()) return positions;
+  if (capture.lio.empty() || capture.scans.empty()) {
+    throw InputError(fmt::format("{}: scans and LiDAR-inertial poses (lio.tum) are needed", capture.folder.string()));
   }
-  return positions;
+  throw InputError(
+      fmt::format("{}: no scan has a LiDAR-inertial pose (lio.tum) at its time: scans from {:.3f} to {:.3f} s, poses "
+                  "from {:.3f} to "
+                  "{:.3f} s, gaps of at most {:g} s",
+                  capture.folder.string(), capture.scans.front().time_s, capture.scans.back().time_s,
+                  capture.lio.front().time_s, capture.lio.back().time_s, max_gap_s));
 }
 
 std::vector<PosePair> pair_in_time(const Trajectory& source, const Trajectory& target, double max_gap_s) {

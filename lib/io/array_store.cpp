@@ -18,6 +18,11 @@ bool ArrayStore::has(std::string_view name) const {
   return zip_ ? zip_->find(file) != nullptr : std::filesystem::exists(folder_ / file);
 }
 
+std::string ArrayStore::name_of(std::string_view name) const {
+  const std::string file = fmt::format("{}{}", name, kSuffix);
+  return zip_ ? fmt::format("{}: {}", zip_->name(), file) : (folder_ / file).string();
+}
+
 NpyArray ArrayStore::read(std::string_view name) const {
   const std::string file = fmt::format("{}{}", name, kSuffix);
   if (!zip_) {
@@ -27,7 +32,7 @@ NpyArray ArrayStore::read(std::string_view name) const {
   const ZipMember* member = zip_->find(file);
   if (member == nullptr) throw InputError(fmt::format("{}: the member {} is missing", zip_->name(), file));
   const Array<std::byte> content = zip_->read(*member);
-  ByteSource source(fmt::format("{}: {}", zip_->name(), file), content);
+  ByteSource source(name_of(name), content);
   NpyArray array = read_npy(source);
   array.label = name;
   return array;

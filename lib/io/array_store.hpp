@@ -24,6 +24,8 @@ class ArrayStore {
   ArrayStore(std::string name, std::span<const std::byte> npz);
 
   bool has(std::string_view name) const;
+  /// What messages call this array.
+  std::string name_of(std::string_view name) const;
   /// Throws InputError if there is none, or it is not what read_npy() reads.
   NpyArray read(std::string_view name) const;
   /// Every member of an NPZ file, in its order.

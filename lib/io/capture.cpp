@@ -2,8 +2,10 @@
 
 #include <algorithm>
 
+#include "cmap/io/session_predictions.hpp"
 #include "io/capture_json.hpp"
 #include "io/csv_table.hpp"
+#include "io/session_files.hpp"
 
 namespace cmap {
 namespace fs = std::filesystem;
@@ -18,34 +20,55 @@ std::string read_text_file(const fs::path& path) {
   return text;
 }
 
-std::vector<StampedFile> read_file_table(const fs::path& folder, const char* name, double offset_s) {
+std::vector<StampedFile> read_file_table(const fs::path& folder, const char* name, double offset_s,
+                                         const Faults& faults) {
   ByteSource source(folder / name);
   CsvTable table(source, {"timestamp_s", "file"});
   IncreasingTimes times;
   std::vector<StampedFile> files;
-  while (table.next()) {
+  bool is_empty = true;
+  table.for_each_row(faults, [&] {
+    is_empty = false;
     times.add(table.lines(), table.number(0));
     if (table.cell(1).empty()) table.lines().fail("no file is named");
     const fs::path path = folder / table.cell(1);
     if (!fs::is_regular_file(path)) table.lines().fail("{} is no file", path.string());
     files.push_back({table.number(0) + offset_s, path});
-  }
-  if (files.empty()) source.fail("lists no file");
+  });
+  if (is_empty) source.fail("lists no file");
   return files;
 }
 
-std::vector<ImuSample> read_imu(const fs::path& path, double unit_mps2, double offset_s) {
+/// The files of a table as far as they are wanted.
+std::vector<StampedFile> wanted_files(Capture& capture, const char* name, Want want, double offset_s,
+                                      const Faults& faults) {
+  std::vector<StampedFile> files;
+  if (want == Want::kYes) {
+    faults.attempt([&] { files = read_file_table(capture.folder, name, offset_s, faults); });
+  } else if (want == Want::kIfUsable && fs::exists(capture.folder / name)) {
+    try {
+      files = read_file_table(capture.folder, name, offset_s, {});
+    } catch (const InputError& error) {
+      capture.warnings.push_back({"part_left_out", fmt::format("{}; the run goes on without", error.what())});
+    }
+  }
+  return files;
+}
+
+std::vector<ImuSample> read_imu(const fs::path& path, double unit_mps2, double offset_s, const Faults& faults) {
   ByteSource source(path);
   CsvTable table(source, {"timestamp_s", "gx", "gy", "gz", "ax", "ay", "az"});
   IncreasingTimes times;
   std::vector<ImuSample> samples;
-  while (table.next()) {
+  bool is_empty = true;
+  table.for_each_row(faults, [&] {
+    is_empty = false;
     times.add(table.lines(), table.number(0));
     const Eigen::Vector3d rate(table.number(1), table.number(2), table.number(3));
     const Eigen::Vector3d force(table.number(4), table.number(5), table.number(6));
     samples.push_back({table.number(0) + offset_s, rate, unit_mps2 * force});
-  }
-  if (samples.empty()) source.fail("holds no measurement");
+  });
+  if (is_empty) source.fail("holds no measurement");
   return samples;
 }
 
@@ -54,6 +77,22 @@ Trajectory read_lio(const fs::path& path, std::vector<Warning>& warnings) {
   if (!file.has_times) throw InputError(path.string() + ": poses without times; time x y z qx qy qz qw expected");
   warnings.insert(warnings.end(), file.warnings.begin(), file.warnings.end());
   return std::move(file.poses);
+}
+
+/// One frames.csv cannot be that of several NPZ files, though each would find it.
+void require_own_frames(const fs::path& folder, const std::vector<fs::path>& sessions) {
+  if (!fs::exists(folder / "frames.csv")) return;
+  std::size_t n_files = 0;
+  std::vector<std::string> missing;
+  for (const fs::path& session : sessions) {
+    if (fs::is_directory(session)) continue;
+    ++n_files;
+    const fs::path own = own_frames_of(session);
+    if (!fs::exists(own)) missing.push_back(own.filename().string());
+  }
+  if (n_files < 2 || missing.empty()) return;
+  throw InputError(fmt::format("{}: of which session? Beside several .npz each has a table of its own; missing: {}",
+                               (folder / "frames.csv").string(), fmt::join(missing, ", ")));
 }
 
 /// Folders, and NPZ files; other files belong to these. What ends in .partial was never finished.
@@ -76,20 +115,37 @@ std::vector<fs::path> find_sessions(const fs::path& folder, std::vector<Warning>
 
 }  // namespace
 
-Capture open_capture(const fs::path& folder) {
+Capture open_capture(const fs::path& folder, const CaptureParts& parts, const Faults& faults) {
   if (!fs::is_directory(folder)) throw InputError(folder.string() + ": is no folder; a capture expected");
-  const fs::path description_path = folder / "capture.json";
-  CaptureDescription description = parse_capture_json(read_text_file(description_path), description_path.string());
-  Capture capture{folder, description.calibration, {}, {}, {}, {}, {}, std::move(description.warnings)};
-  capture.images = read_file_table(folder, "images.csv", capture.calibration.image_time_offset_s);
-  capture.scans = read_file_table(folder, "lidar.csv", 0.0);
-  if (fs::exists(folder / "imu.csv")) {
-    capture.imu =
-        read_imu(folder / "imu.csv", description.acceleration_unit_mps2, capture.calibration.imu_time_offset_s);
+  Capture capture;
+  capture.folder = folder;
+  CaptureDescription description;
+  faults.attempt([&] {
+    const fs::path path = folder / "capture.json";
+    description = parse_capture_json(read_text_file(path), path.string(), faults);
+  });
+  capture.calibration = description.calibration;
+  capture.warnings = std::move(description.warnings);
+  const CaptureCalibration& calibration = capture.calibration;
+  capture.images = wanted_files(capture, "images.csv", parts.images, calibration.image_time_offset_s, faults);
+  capture.scans = wanted_files(capture, "lidar.csv", parts.scans, 0.0, faults);
+  const fs::path imu = folder / "imu.csv", lio = folder / "lio.tum", predictions = folder / "predictions";
+  if (parts.imu != Want::kNo && fs::exists(imu)) {
+    faults.attempt([&] {
+      capture.imu = read_imu(imu, description.acceleration_unit_mps2, calibration.imu_time_offset_s, faults);
+    });
   }
-  if (fs::exists(folder / "lio.tum")) capture.lio = read_lio(folder / "lio.tum", capture.warnings);
-  capture.sessions = find_sessions(folder / "predictions", capture.warnings);
+  if (fs::exists(lio)) faults.attempt([&] { capture.lio = read_lio(lio, capture.warnings); });
+  if (parts.sessions == Want::kNo) return capture;
+  faults.attempt([&] { capture.sessions = find_sessions(predictions, capture.warnings); });
+  faults.attempt([&] { require_own_frames(predictions, capture.sessions); });
   return capture;
+}
+
+SessionPredictions read_session(const Capture& capture, std::size_t session, const Faults& faults) {
+  SessionPredictions predictions = read_session_predictions(capture.sessions.at(session), faults);
+  for (PredictionFrame& frame : predictions.frames) frame.time_s += capture.calibration.image_time_offset_s;
+  return predictions;
 }
 
 }  // namespace cmap

@@ -4,6 +4,7 @@
 
 #include "cmap/core/error.hpp"
 #include "io/input_json.hpp"
+#include "io/picture_fit.hpp"
 #include "io/rotation_check.hpp"
 
 namespace cmap {
@@ -101,17 +102,38 @@ Json matrix_json(const Eigen::Isometry3d& transform) {
 
 }  // namespace
 
-CaptureDescription parse_capture_json(const std::string& text, const std::string& source) {
+CaptureDescription parse_capture_json(const std::string& text, const std::string& source, const Faults& faults) {
   CaptureDescription description;
-  read_input_json(text, source, [&](const Json& json) {
+  CaptureCalibration& calibration = description.calibration;
+  const auto part = [&](const JsonReader& read) {
+    return faults.attempt([&] { read_input_json(text, source, read); });
+  };
+  // A part that is not there is named with all keys.
+  const auto part_of = [&](const char* key, const JsonReader& read) {
+    part([&](const Json& json) {
+      if (json.contains(key)) read(json[key]);
+    });
+  };
+  bool is_object = false;
+  part([&](const Json& json) {
+    is_object = json.is_object();
     check_keys(json, "", {"version", "camera", "T_imu_lidar", "T_lidar_camera"}, {"imu", "time_offset"});
-    if (json["version"] != 1) throw UsageError(fmt::format("version is {}; 1 expected", json["version"].dump()));
-    description.calibration.camera = camera_of(json["camera"]);
-    description.calibration.T_imu_lidar = transform_of(json["T_imu_lidar"], "T_imu_lidar", description);
-    description.calibration.T_lidar_camera = transform_of(json["T_lidar_camera"], "T_lidar_camera", description);
-    if (json.contains("imu")) description.acceleration_unit_mps2 = acceleration_unit_of(json["imu"]);
-    if (json.contains("time_offset")) read_offsets(json["time_offset"], description.calibration);
   });
+  if (!is_object) return description;
+  part_of("version", [](const Json& json) {
+    if (json != 1) throw UsageError(fmt::format("version is {}; 1 expected", json.dump()));
+  });
+  part_of("camera", [&](const Json& json) {
+    const CameraModel& camera = calibration.camera = camera_of(json);
+    const std::string doubt = principal_point_doubt(camera.cx, camera.cy, camera.width, camera.height);
+    if (!doubt.empty()) description.warnings.push_back({"camera_of_another_size", source + ": camera.K: " + doubt});
+  });
+  for (auto [key, T] :
+       {std::pair("T_imu_lidar", &calibration.T_imu_lidar), std::pair("T_lidar_camera", &calibration.T_lidar_camera)}) {
+    part_of(key, [&](const Json& json) { *T = transform_of(json, key, description); });
+  }
+  part_of("imu", [&](const Json& json) { description.acceleration_unit_mps2 = acceleration_unit_of(json); });
+  part_of("time_offset", [&](const Json& json) { read_offsets(json, calibration); });
   return description;
 }
 

@@ -13,8 +13,9 @@ struct CaptureDescription {
   std::vector<Warning> warnings;
 };
 
-/// Reads the text of a capture.json; `source` names it in messages. Throws InputError as open_capture does.
-CaptureDescription parse_capture_json(const std::string& text, const std::string& source);
+/// Reads the text of a capture.json; `source` names it in messages. Throws InputError as open_capture does, or puts
+/// what is wrong with each part into `faults`.
+CaptureDescription parse_capture_json(const std::string& text, const std::string& source, const Faults& faults = {});
 
 /// The text that reads back as the same calibration; accelerations in m/s^2.
 std::string capture_json(const CaptureCalibration& calibration);

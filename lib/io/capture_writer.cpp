@@ -83,7 +83,8 @@ void CaptureWriter::write_lio(const Trajectory& world_T_imu) {
 
 void CaptureWriter::add_session(const SessionPredictions& session) {
   const fs::path folder = state_->output.subfolder("predictions");
-  write_session_predictions(session, folder / fmt::format("session_{:04}", state_->sessions++));
+  write_session_predictions(session, folder / fmt::format("session_{:04}", state_->sessions++),
+                            state_->calibration.image_time_offset_s);
 }
 
 fs::path CaptureWriter::subfolder(const std::string& name) { return state_->output.subfolder(name); }

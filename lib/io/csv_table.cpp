@@ -1,6 +1,7 @@
 #include "io/csv_table.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "io/number_text.hpp"
 
@@ -52,10 +53,29 @@ std::uint64_t CsvTable::whole_number(std::size_t column) const {
   return value;
 }
 
+bool CsvTable::for_each_row(const Faults& faults, const std::function<void()>& read_row) {
+  constexpr std::size_t kMostFaults = 10;
+  std::size_t n_faults = 0;
+  for (bool is_row = true; is_row;) {
+    const std::uint64_t place = lines_.source().position();
+    const bool is_good = faults.attempt([&] {
+      is_row = next();
+      if (is_row) read_row();
+    });
+    if (is_good) continue;
+    if (lines_.source().position() == place) return false;  // a line too long to step over
+    if (++n_faults < kMostFaults) continue;
+    faults.attempt([&] { lines_.fail("{} rows are faulty so far; the rest was not read", n_faults); });
+    return false;
+  }
+  return n_faults == 0;
+}
+
 void IncreasingTimes::add(const LineReader& lines, double time_s) {
-  if (any_ && !(time_s > last_s_)) lines.fail("time {} s is not after the {} s before it", time_s, last_s_);
+  const bool is_after = !any_ || time_s > last_s_;
+  const double before_s = std::exchange(last_s_, time_s);
   any_ = true;
-  last_s_ = time_s;
+  if (!is_after) lines.fail("time {} s is not after the {} s before it", time_s, before_s);
 }
 
 }  // namespace cmap

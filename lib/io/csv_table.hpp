@@ -1,9 +1,11 @@
 #pragma once
 
+#include <functional>
 #include <initializer_list>
 #include <string_view>
 #include <vector>
 
+#include "cmap/io/faults.hpp"
 #include "io/line_reader.hpp"
 
 namespace cmap {
@@ -16,6 +18,9 @@ class CsvTable {
 
   /// The next row that is not blank; false at the end. Throws InputError for another number of cells.
   bool next();
+  /// Calls read_row() for each of the rows that are left. What is wrong with a row goes to `faults`, of ten at most;
+  /// true if nothing is.
+  bool for_each_row(const Faults& faults, const std::function<void()>& read_row);
   std::string_view cell(std::size_t column) const { return cells_[column]; }
   /// The cell as a finite number, or as a whole one; throws InputError naming line and column for anything else.
   double number(std::size_t column) const;
@@ -30,7 +35,7 @@ class CsvTable {
   std::vector<std::string_view> cells_;
 };
 
-/// Throws InputError unless each time comes after the one before it.
+/// Throws InputError where a time does not come after the one before it, which may be faulty itself.
 class IncreasingTimes {
  public:
   void add(const LineReader& lines, double time_s);

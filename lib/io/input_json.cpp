@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "cmap/core/error.hpp"
 
@@ -44,14 +45,16 @@ void check_keys(const Json& json, std::string_view where, std::initializer_list<
   const auto among = [](const auto& names, std::string_view key) {
     return std::find(names.begin(), names.end(), key) != names.end();
   };
+  std::vector<std::string> wrong;
   for (const auto& [key, value] : json.items()) {
     if (!among(required, key) && !among(optional, key)) {
-      throw UsageError(fmt::format("unknown key \"{}\"", full_name(where, key)));
+      wrong.push_back(fmt::format("unknown key \"{}\"", full_name(where, key)));
     }
   }
   for (const std::string_view key : required) {
-    if (!json.contains(key)) throw UsageError(fmt::format("key \"{}\" is missing", full_name(where, key)));
+    if (!json.contains(key)) wrong.push_back(fmt::format("key \"{}\" is missing", full_name(where, key)));
   }
+  if (!wrong.empty()) throw UsageError(fmt::format("{}", fmt::join(wrong, "; ")));
 }
 
 double finite_number(const Json& json, std::string_view name) {

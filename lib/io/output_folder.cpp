@@ -1,8 +1,17 @@
 #include "cmap/io/output_folder.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include "cmap/core/error.hpp"
 
@@ -10,8 +19,66 @@ namespace cmap {
 namespace fs = std::filesystem;
 namespace {
 
+/// Says of a folder that it is an unfinished one of ours, which may be thrown away.
+constexpr const char* kMark = ".unfinished";
+
 [[noreturn]] void fail(const fs::path& path, std::string_view reason) {
   throw UsageError(fmt::format("{}: cannot be written: {}", path.string(), reason));
+}
+
+/// True if it was made, false if it was there.
+bool made_folder(const fs::path& path, const fs::path& for_whom) {
+  std::error_code error;
+  const bool made = fs::create_directory(path, error);
+  if (error) fail(for_whom, error.message());
+  return made;
+}
+
+void require_free(const fs::path& path) {
+  if (fs::exists(fs::symlink_status(path))) fail(path, "it is already there");
+}
+
+/// Empties what a run that was stopped has left; throws where it is anything else.
+void take_over(const fs::path& partial, const fs::path& path) {
+  std::error_code error;
+  std::vector<fs::path> rest;
+  for (auto entry = fs::directory_iterator(partial, error); !error && entry != fs::directory_iterator();
+       entry.increment(error)) {
+    rest.push_back(entry->path());
+  }
+  if (error) fail(partial, error.message());
+  const auto is_mark = [](const fs::path& entry) { return entry.filename() == kMark; };
+  if (!rest.empty() && std::ranges::none_of(rest, is_mark)) {
+    fail(path, fmt::format("{} is there, and is not what a run that was stopped has left", partial.string()));
+  }
+  for (const fs::path& entry : rest) {
+    if (!is_mark(entry)) fs::remove_all(entry, error);
+    if (error) fail(entry, error.message());
+  }
+}
+
+void mark(const fs::path& partial) {
+  const fs::path path = partial / kMark;
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  if (descriptor < 0) fail(path, std::strerror(errno));
+  ::close(descriptor);
+}
+
+/// Makes the partial folder, or takes over that of a stopped run, and locks it.
+FolderLock claim(const fs::path& partial, const fs::path& path) {
+  for (;;) {
+    require_free(path);
+    const bool made = made_folder(partial, path);
+    FolderLock lock(partial);
+    // Between making and locking, another program may have finished or given up.
+    if (lock.is_held() && !lock.is_of(partial)) continue;
+    if (!made && !lock.is_held()) {
+      fail(path, fmt::format("{} is there: left by a run that was stopped, or still in use", partial.string()));
+    }
+    take_over(partial, path);
+    mark(partial);
+    return lock;
+  }
 }
 
 }  // namespace
@@ -22,15 +89,38 @@ void make_folder(const fs::path& folder) {
   if (error) throw UsageError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
 }
 
+FolderLock::FolderLock(const fs::path& folder) {
+  descriptor_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor_ < 0) fail(folder, std::strerror(errno));
+  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+  const bool is_taken = errno == EWOULDBLOCK;
+  ::close(std::exchange(descriptor_, -1));
+  if (is_taken) fail(folder, "another program is writing into it");
+}
+
+FolderLock::~FolderLock() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+FolderLock::FolderLock(FolderLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+FolderLock& FolderLock::operator=(FolderLock&& other) noexcept {
+  std::swap(descriptor_, other.descriptor_);
+  return *this;
+}
+
+bool FolderLock::is_of(const fs::path& folder) const {
+  struct stat locked {
+  }, named{};
+  return ::fstat(descriptor_, &locked) == 0 && ::stat(folder.c_str(), &named) == 0 && locked.st_dev == named.st_dev &&
+         locked.st_ino == named.st_ino;
+}
+
 OutputFolder::OutputFolder(fs::path path) {
   path_ = path.has_filename() ? std::move(path) : path.parent_path();  // "name/" is "name"
   fs::path partial = path_;
   partial += ".partial";
-  if (fs::exists(fs::symlink_status(path_))) fail(path_, "it is already there");
-  std::error_code error;
-  const bool made = fs::create_directory(partial, error);
-  if (error) fail(path_, error.message());
-  if (!made) fail(path_, fmt::format("{} is there: left by a run that was stopped, or still in use", partial.string()));
+  lock_ = claim(partial, path_);
   partial_ = std::move(partial);
 }
 
@@ -48,10 +138,12 @@ fs::path OutputFolder::subfolder(const fs::path& name) const {
 }
 
 void OutputFolder::commit() {
+  require_free(path_);
   std::error_code error;
   fs::rename(partial_, path_, error);
   if (error) fail(path_, error.message());
   partial_.clear();
+  fs::remove(path_ / kMark, error);  // last: whoever is killed before leaves a rest that is known as one
 }
 
 }  // namespace cmap

@@ -1,10 +1,11 @@
 #include "io/session_arrays.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
+#include "io/picture_fit.hpp"
 #include "io/rotation_check.hpp"
 
 namespace cmap {
@@ -95,52 +96,57 @@ float median_depth(const SessionPredictions& session) {
   return *middle;
 }
 
-/// VGGT's frame 0 is the session frame only nearly; from here on it is.
-void make_first_camera_the_frame(const std::string& name, SessionPredictions& session) {
-  constexpr double kAngle_deg = 2.0, kDepths = 0.05;  // far more than VGGT's own
-  const Eigen::Isometry3d T_first_session = session.T_camera_session.front();
-  const double angle_deg = Eigen::AngleAxisd(T_first_session.linear()).angle() * 180.0 / std::numbers::pi;
-  const double depths = T_first_session.translation().norm() / static_cast<double>(median_depth(session));
-  if (angle_deg > kAngle_deg || depths > kDepths) {
-    session.warnings.push_back({"first_camera_not_identity",
-                                fmt::format("{}: the first camera is {:.3g} deg and {:.3g} median depths away from the "
-                                            "session's frame; is frame 0 the first of the session?",
-                                            name, angle_deg, depths)});
-  }
-  const Eigen::Isometry3d T_session_first = T_first_session.inverse();
-  for (Eigen::Isometry3d& pose : session.T_camera_session) pose = pose * T_session_first;
-  session.T_camera_session.front() = Eigen::Isometry3d::Identity();
-  const Eigen::Isometry3f T = T_first_session.cast<float>();
-  for (Eigen::Vector3f& point : session.world_points) point = T * point;
+/// What values from `low` to `high` probably are, in place of [0,1].
+std::string_view range_hint(float low, float high) {
+  if (low >= 0.0F && high <= 255.0F) return "; are these 0 to 255? Divide by 255";
+  if (low >= -1.0F && high <= 1.0F) return "; are these -1 to 1? Take (x + 1) / 2";
+  if (low >= -2.2F && high <= 2.7F) return "; were they normalized for a network? Undo that";
+  return "";
 }
 
-std::uint8_t to_byte(const NpyArray& images, float value) {
-  constexpr float kSlack = 1e-3F;  // rounding of whoever resized the picture
-  if (!(value >= -kSlack && value <= 1.0F + kSlack)) {
-    images.fail("holds {:g}; float images lie in [0,1]", value);
+/// Float pictures as bytes. Resizing by bicubic or Lanczos interpolation oversteps [0,1] a little.
+Array<std::uint8_t> to_bytes(const NpyArray& images, SessionPredictions& session) {
+  constexpr float kOverstep = 0.25F;
+  const Array<float> values = images.to_floats();
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const auto odd = std::find_if(values.begin(), values.end(), [](float v) { return !std::isfinite(v); });
+  if (odd != values.end()) images.fail("holds {:g}; float images lie in [0,1]", *odd);
+  const float excess = std::max(-*low, *high - 1.0F);
+  if (excess > kOverstep) {
+    images.fail("holds {:g}; float images lie in [0,1]{}", excess == -*low ? *low : *high, range_hint(*low, *high));
   }
-  return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0F, 1.0F) * 255.0F));
+  Array<std::uint8_t> bytes(values.size());
+  std::size_t n_outside = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const float value = std::clamp(values[i], 0.0F, 1.0F);
+    if (value != values[i]) ++n_outside;
+    bytes[i] = static_cast<std::uint8_t>(std::lround(value * 255.0F));
+  }
+  if (n_outside > 0) {
+    session.warnings.push_back(
+        {"clamped_picture", fmt::format("{}: {} of {} values are outside [0,1], by up to {:.2g}; they count as 0 or 1",
+                                        images.name, n_outside, values.size(), excess)});
+  }
+  return bytes;
 }
 
 /// (S,H,W,3) or (S,3,H,W), bytes or floats in [0,1].
-Array<Rgb8> to_colors(const NpyArray& images, std::uint64_t frames, std::uint64_t height, std::uint64_t width) {
+void set_colors(const NpyArray& images, std::uint64_t frames, SessionPredictions& session) {
+  const auto height = static_cast<std::uint64_t>(session.height), width = static_cast<std::uint64_t>(session.width);
   const bool planes = images.shape() == Shape{frames, 3, height, width};
   if (!planes && images.shape() != Shape{frames, height, width, 3}) {
     images.fail("has the shape {}; {} or {} expected", shape_text(images.shape()),
                 shape_text({frames, height, width, 3}), shape_text({frames, 3, height, width}));
   }
   const bool bytes = images.header.fields[0].type == "|u1";
-  const Array<std::uint8_t> byte_values = bytes ? images.to_bytes() : Array<std::uint8_t>();
-  const Array<float> float_values = bytes ? Array<float>() : images.to_floats();
+  const Array<std::uint8_t> values = bytes ? images.to_bytes() : to_bytes(images, session);
   const std::size_t pixels = height * width;
-  Array<Rgb8> colors(frames * pixels);
-  for (std::size_t i = 0; i < colors.size(); ++i) {
+  session.images.resize(frames * pixels);
+  for (std::size_t i = 0; i < session.images.size(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t place = planes ? (3 * (i / pixels) + k) * pixels + i % pixels : 3 * i + k;
-      colors[i][k] = bytes ? byte_values[place] : to_byte(images, float_values[place]);
+      session.images[i][k] = values[planes ? (3 * (i / pixels) + k) * pixels + i % pixels : 3 * i + k];
     }
   }
-  return colors;
 }
 
 }  // namespace
@@ -164,20 +170,33 @@ void read_depth(const ArrayStore& store, SessionPredictions& session, std::size_
 }
 
 void read_images(const ArrayStore& store, SessionPredictions& session, std::size_t frame_count) {
-  session.images = to_colors(read_of(store, "images", 4), frame_count, static_cast<std::uint64_t>(session.height),
-                             static_cast<std::uint64_t>(session.width));
+  set_colors(read_of(store, "images", 4), frame_count, session);
 }
 
-void read_cameras(const ArrayStore& store, SessionPredictions& session, std::size_t frame_count) {
-  const NpyArray extrinsic = read_of(store, "extrinsic", 3), intrinsic = read_of(store, "intrinsic", 3);
-  require_shape(extrinsic, {frame_count, 3, 4});
+void read_intrinsics(const ArrayStore& store, SessionPredictions& session, std::size_t frame_count) {
+  const NpyArray intrinsic = read_of(store, "intrinsic", 3);
   require_shape(intrinsic, {frame_count, 3, 3});
-  const Array<double> poses = extrinsic.to_doubles(), matrices = intrinsic.to_doubles();
+  const Array<double> matrices = intrinsic.to_doubles();
   for (std::size_t i = 0; i < frame_count; ++i) {
-    session.T_camera_session.push_back(pose_of(extrinsic, poses.data() + 12 * i, i));
-    session.intrinsics.push_back(intrinsics_of(intrinsic, matrices.data() + 9 * i, i));
+    const Eigen::Matrix3d K = intrinsics_of(intrinsic, matrices.data() + 9 * i, i);
+    const std::string doubt = principal_point_doubt(K(0, 2), K(1, 2), session.width, session.height);
+    if (!doubt.empty()) intrinsic.fail("frame {}: {}", i, doubt);
+    session.intrinsics.push_back(K);
   }
-  make_first_camera_the_frame(extrinsic.name, session);
+}
+
+void read_poses(const ArrayStore& store, SessionPredictions& session, std::size_t frame_count) {
+  const NpyArray extrinsic = read_of(store, "extrinsic", 3);
+  const bool is_square = extrinsic.shape() == Shape{frame_count, 4, 4};
+  if (!is_square) require_shape(extrinsic, {frame_count, 3, 4});
+  const Array<double> values = extrinsic.to_doubles();
+  for (std::size_t i = 0; i < frame_count; ++i) {
+    const double* const matrix = values.data() + (is_square ? 16 : 12) * i;
+    if (is_square && !std::equal(matrix + 12, matrix + 16, std::array{0.0, 0.0, 0.0, 1.0}.begin())) {
+      extrinsic.fail("frame {}: the last row is not 0 0 0 1", i);
+    }
+    session.T_camera_session.push_back(pose_of(extrinsic, matrix, i));
+  }
 }
 
 void read_world_points(const ArrayStore& store, SessionPredictions& session, std::size_t frame_count) {
@@ -204,6 +223,25 @@ void read_world_points(const ArrayStore& store, SessionPredictions& session, std
                                                               points.name, invalid, confidence.size())});
   }
   note_low_confidence(confidence.name, session.world_points_confidence, session);
+}
+
+void make_first_camera_the_frame(const ArrayStore& store, SessionPredictions& session) {
+  constexpr double kAngle_deg = 2.0, kDepths = 0.05;  // far more than VGGT's own
+  const Eigen::Isometry3d T_first_session = session.T_camera_session.front();
+  const double angle_deg = Eigen::AngleAxisd(T_first_session.linear()).angle() * 180.0 / std::numbers::pi;
+  const double depths = T_first_session.translation().norm() / static_cast<double>(median_depth(session));
+  if (angle_deg > kAngle_deg || depths > kDepths) {
+    session.warnings.push_back({"first_camera_not_identity",
+                                fmt::format("{}: the first camera is {:.3g} deg and {:.3g} median depths away from the "
+                                            "session's frame; is frame 0 the first of the session?",
+                                            store.name_of("extrinsic"), angle_deg, depths)});
+  }
+  const Eigen::Isometry3d T_session_first = T_first_session.inverse();
+  for (Eigen::Isometry3d& pose : session.T_camera_session) pose = pose * T_session_first;
+  session.T_camera_session.front() = Eigen::Isometry3d::Identity();
+  session.T_session_file = T_first_session;
+  const Eigen::Isometry3f T = T_first_session.cast<float>();
+  for (Eigen::Vector3f& point : session.world_points) point = T * point;
 }
 
 }  // namespace cmap

@@ -4,31 +4,13 @@
 #include "io/input_json.hpp"
 #include "io/number_text.hpp"
 #include "io/session_arrays.hpp"
+#include "io/session_files.hpp"
 
 namespace cmap {
 namespace fs = std::filesystem;
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// Where the parts of a session lie.
-struct SessionFiles {
-  fs::path arrays;  ///< folder or NPZ file
-  fs::path frames;  ///< CSV
-  fs::path meta;    ///< empty: an NPZ file has none
-};
-
-SessionFiles find_files(const fs::path& path) {
-  if (!fs::exists(path)) throw InputError(path.string() + ": no such file or folder; a session's predictions expected");
-  const fs::path inside = path / "predictions.npz";
-  const bool folder = fs::is_directory(path);
-  if (folder && (fs::exists(path / "depth.npy") || !fs::exists(inside))) {
-    return {path, path / "frames.csv", path / "meta.json"};
-  }
-  const fs::path npz = folder ? inside : path;
-  const fs::path own_frames = npz.parent_path() / (npz.stem().string() + ".frames.csv");
-  return {npz, fs::exists(own_frames) ? own_frames : npz.parent_path() / "frames.csv", {}};
-}
 
 int original_size(const CsvTable& table, std::size_t column) {
   constexpr std::uint64_t kMost = 1 << 20;
@@ -37,7 +19,8 @@ int original_size(const CsvTable& table, std::size_t column) {
   return static_cast<int>(size);
 }
 
-std::vector<PredictionFrame> read_frames(const fs::path& path) {
+/// As many as there are in the arrays, where that is known; none where a row is faulty.
+std::vector<PredictionFrame> read_frames(const fs::path& path, std::size_t frame_count, const Faults& faults) {
   if (!fs::exists(path)) {
     throw InputError(path.string() + ": no such file; the times of the session's frames expected there");
   }
@@ -45,13 +28,21 @@ std::vector<PredictionFrame> read_frames(const fs::path& path) {
   CsvTable table(source, {"index", "timestamp_s", "image_name", "orig_w", "orig_h"});
   IncreasingTimes times;
   std::vector<PredictionFrame> frames;
-  while (table.next()) {
-    if (table.whole_number(0) != frames.size())
-      table.lines().fail("index {}; {} expected", table.cell(0), frames.size());
-    times.add(table.lines(), table.number(1));
-    frames.push_back(
-        {frames.size(), table.number(1), std::string(table.cell(2)), original_size(table, 3), original_size(table, 4)});
+  const bool is_good = table.for_each_row(faults, [&] {
+    const std::size_t index = frames.size();
+    PredictionFrame& frame = frames.emplace_back();
+    frame.index = index;
+    if (table.whole_number(0) != index) table.lines().fail("index {}; {} expected", table.cell(0), index);
+    frame.time_s = table.number(1);
+    times.add(table.lines(), frame.time_s);
+    frame.image_name = table.cell(2);
+    frame.original_width = original_size(table, 3);
+    frame.original_height = original_size(table, 4);
+  });
+  if (frame_count > 0 && frames.size() != frame_count) {
+    source.fail("{} frames, but {} in the arrays", frames.size(), frame_count);
   }
+  if (!is_good) frames.clear();
   return frames;
 }
 
@@ -71,36 +62,58 @@ void require_convention(const Json& meta, const char* key, std::initializer_list
 }
 
 /// Other keys say where a session comes from, and are not read.
-void check_meta(const fs::path& path, const SessionPredictions& session, std::size_t frame_count) {
-  read_input_json_file(path, "the description of a session", [&](const Json& meta) {
-    if (!meta.is_object()) throw UsageError("an object expected");
+void check_meta(const fs::path& path, const SessionPredictions& session, std::size_t frame_count,
+                const Faults& faults) {
+  const auto part = [&](const JsonReader& read) {
+    return faults.attempt([&] { read_input_json_file(path, "the description of a session", read); });
+  };
+  bool is_object = false;
+  part([&](const Json& meta) {
+    is_object = meta.is_object();
+    if (!is_object) throw UsageError("an object expected");
     if (!meta.contains("version") || meta["version"] != 1) throw UsageError("\"version\": 1 expected");
-    require_same_size(meta, "frames", frame_count);
-    require_same_size(meta, "width", static_cast<std::size_t>(session.width));
-    require_same_size(meta, "height", static_cast<std::size_t>(session.height));
-    require_convention(meta, "pose_convention", {"opencv_cam_from_world"});
-    require_convention(meta, "depth_type", {"z"});
-    require_convention(meta, "intrinsics_pixel_origin", {"integer_center", "integer_centre"});
   });
+  if (!is_object) return;
+  const std::size_t sizes[] = {frame_count, static_cast<std::size_t>(session.width),
+                               static_cast<std::size_t>(session.height)};
+  const char* const names[] = {"frames", "width", "height"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (sizes[i] > 0) part([&](const Json& meta) { require_same_size(meta, names[i], sizes[i]); });
+  }
+  const auto convention = [&](const char* key, std::initializer_list<std::string_view> known) {
+    part([&](const Json& meta) { require_convention(meta, key, known); });
+  };
+  convention("pose_convention", {"opencv_cam_from_world"});
+  convention("depth_type", {"z"});
+  convention("intrinsics_pixel_origin", {"integer_center", "integer_centre"});
+}
+
+/// The arrays beside the depth; `frame_count` is 0 where its size is not known, and they can only be there or not.
+void read_other_arrays(const ArrayStore& store, SessionPredictions& session, std::size_t frame_count, bool has_depth,
+                       const Faults& faults) {
+  if (frame_count == 0) {
+    for (const char* name : {"depth_conf", "images", "extrinsic", "intrinsic"})
+      faults.attempt([&] { store.read(name); });
+    return;
+  }
+  faults.attempt([&] { read_images(store, session, frame_count); });
+  faults.attempt([&] { read_world_points(store, session, frame_count); });
+  const bool has_poses = faults.attempt([&] { read_poses(store, session, frame_count); });
+  faults.attempt([&] { read_intrinsics(store, session, frame_count); });
+  if (has_depth && has_poses) make_first_camera_the_frame(store, session);
 }
 
 }  // namespace
 
-SessionPredictions read_session_predictions(const fs::path& folder_or_npz) {
-  const SessionFiles files = find_files(folder_or_npz);
-  const ArrayStore store(files.arrays);
+SessionPredictions read_session_predictions(const fs::path& folder_or_npz, const Faults& faults) {
   SessionPredictions session;
+  const SessionFiles files = find_session_files(folder_or_npz);
+  const ArrayStore store(files.arrays);
   std::size_t frame_count = 0;
-  read_depth(store, session, frame_count);
-  if (!files.meta.empty()) check_meta(files.meta, session, frame_count);
-  session.frames = read_frames(files.frames);
-  if (session.frames.size() != frame_count) {
-    throw InputError(
-        fmt::format("{}: {} frames, but {} in the arrays", files.frames.string(), session.frames.size(), frame_count));
-  }
-  read_images(store, session, frame_count);
-  read_world_points(store, session, frame_count);
-  read_cameras(store, session, frame_count);
+  const bool has_depth = faults.attempt([&] { read_depth(store, session, frame_count); });
+  if (!files.meta.empty()) check_meta(files.meta, session, frame_count, faults);
+  faults.attempt([&] { session.frames = read_frames(files.frames, frame_count, faults); });
+  read_other_arrays(store, session, frame_count, has_depth, faults);
   for (const std::string& name : store.python_members()) {
     session.warnings.push_back({"skipped_member", fmt::format("{}: {} holds pickled Python objects and was skipped",
                                                               files.arrays.string(), name)});

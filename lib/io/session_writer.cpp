@@ -43,11 +43,11 @@ void write_cameras(const SessionPredictions& session, const std::filesystem::pat
   write_array(folder / "intrinsic.npy", ScalarType::kFloat64, {session.frame_count(), 3, 3}, matrices.data());
 }
 
-void write_frames(const SessionPredictions& session, const std::filesystem::path& path) {
+void write_frames(const SessionPredictions& session, double time_offset_s, const std::filesystem::path& path) {
   OutputFile file(path);
   file.write("index,timestamp_s,image_name,orig_w,orig_h\n");
   for (const PredictionFrame& frame : session.frames) {
-    file.write(fmt::format("{},{},{},{},{}\n", frame.index, frame.time_s, csv_cell(frame.image_name),
+    file.write(fmt::format("{},{},{},{},{}\n", frame.index, frame.time_s - time_offset_s, csv_cell(frame.image_name),
                            frame.original_width, frame.original_height));
   }
   file.commit();
@@ -68,7 +68,8 @@ void write_meta(const SessionPredictions& session, const std::filesystem::path& 
 
 }  // namespace
 
-void write_session_predictions(const SessionPredictions& session, const std::filesystem::path& folder) {
+void write_session_predictions(const SessionPredictions& session, const std::filesystem::path& folder,
+                               double time_offset_s) {
   check_sizes(session);
   OutputFolder output(folder);
   const std::filesystem::path& partial = output.partial();
@@ -76,7 +77,7 @@ void write_session_predictions(const SessionPredictions& session, const std::fil
                      static_cast<std::uint64_t>(session.width)};
   Shape triples = pixels;
   triples.push_back(3);
-  write_frames(session, partial / "frames.csv");
+  write_frames(session, time_offset_s, partial / "frames.csv");
   write_array(partial / "images.npy", ScalarType::kUint8, triples, session.images.data());
   write_array(partial / "depth.npy", ScalarType::kFloat32, pixels, session.depth.data());
   write_array(partial / "depth_conf.npy", ScalarType::kFloat32, pixels, session.depth_confidence.data());

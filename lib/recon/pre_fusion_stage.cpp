@@ -5,8 +5,10 @@
 
 #include "cmap/core/error.hpp"
 #include "cmap/recon/overlap_scale.hpp"
+#include "recon/pose_convention.hpp"
 #include "recon/session_state.hpp"
 #include "recon/shared_frames.hpp"
+#include "recon/time_spans.hpp"
 #include "recon/usable_predictions.hpp"
 
 namespace cmap {
@@ -14,12 +16,6 @@ namespace {
 
 std::span<const float> plane(const Array<float>& values, std::size_t frame, std::size_t size) {
   return std::span<const float>(values).subspan(frame * size, size);
-}
-
-std::vector<double> times_of(const SessionPredictions& session) {
-  std::vector<double> times_s;
-  for (const PredictionFrame& frame : session.frames) times_s.push_back(frame.time_s);
-  return times_s;
 }
 
 /// Scale of b over that of a from the frames of both.
@@ -45,20 +41,23 @@ struct ReadSession {
   std::optional<SessionPredictions> predictions;
 };
 
-ReadSession read_session(const Capture& capture, std::size_t index, const ReconstructionOptions& options) {
+ReadSession read_and_place(const Capture& capture, std::size_t index, const ReconstructionOptions& options) {
   ReadSession session;
   SessionOutcome& outcome = session.state.outcome;
   outcome.index = index;
   outcome.name = capture.sessions[index].filename().string();
   try {
-    session.predictions = read_usable_predictions(capture.sessions[index]);
+    session.predictions = read_usable_predictions(capture, index);
     outcome.frames = session.predictions->frame_count();
     for (const Warning& warning : session.predictions->warnings) outcome.flags.push_back(warning.message);
     session.frames = frames_of(*session.predictions);
     session.state.min_confidence = confidence_threshold(*session.predictions, options.confidence, options.points);
-    const OdometryPoses poses = odometry_poses(capture, times_of(*session.predictions), options.prefusion);
+    const std::vector<double> times_s = times_of(*session.predictions);
+    const OdometryPoses poses = odometry_poses(capture, times_s, options.prefusion);
     const auto n_placed = std::ranges::count_if(poses, [](const auto& pose) { return pose.has_value(); });
-    if (n_placed == 0) throw UnsupportedError("no frame has a LiDAR-inertial pose at its time");
+    if (n_placed == 0) throw UnsupportedError(no_common_time(times_s, capture.lio, options.prefusion.max_gap_s));
+    const std::string doubt = pose_convention_doubt(poses_of_file(*session.predictions), poses);
+    if (!doubt.empty()) throw InputError(fmt::format("{}: extrinsic: {}", capture.sessions[index].string(), doubt));
     if (n_placed < static_cast<std::ptrdiff_t>(poses.size())) {
       outcome.flags.push_back(fmt::format("{} of {} frames have no LiDAR-inertial pose",
                                           static_cast<std::ptrdiff_t>(poses.size()) - n_placed, poses.size()));
@@ -127,13 +126,16 @@ std::vector<SessionState> pre_fuse_sessions(const Capture& capture, const Recons
   std::vector<std::optional<ScaleRatio>> ratios;  // between one of these and the next
   std::vector<std::size_t> kept;
   std::optional<SessionPredictions> before;
+  SeenTimes seen;
   for (std::size_t index = 0; index < capture.sessions.size(); ++index) {
     if (only_session && *only_session != index) continue;
     if (progress)
       progress(stage_name(Stage::kPrefusion),
                static_cast<double>(index) / static_cast<double>(capture.sessions.size()));
-    ReadSession session = read_session(capture, index, options);
+    ReadSession session = read_and_place(capture, index, options);
     if (session.state.is_kept()) {
+      const std::string copy = seen.add(session.state.outcome.name, times_of(*session.predictions));
+      if (!copy.empty()) session.state.outcome.flags.push_back(copy);
       if (!kept.empty()) {
         ratios.push_back(before ? scale_ratio(*before, *session.predictions, options.overlap_scale) : std::nullopt);
       }

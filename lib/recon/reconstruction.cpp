@@ -171,13 +171,17 @@ void fuse(const Capture& capture, const ReconstructionOptions& options, const Re
   result.map = fusion.finish(options.fusion_doubt);
 }
 
-void check_inputs(const Capture& capture, const ReconstructionRun& run) {
+void check_inputs(const Capture& capture, const ReconstructionOptions& options, const ReconstructionRun& run) {
   if (capture.sessions.empty()) {
     throw InputError(fmt::format("{}: no sessions of predictions", (capture.folder / "predictions").string()));
   }
   if (capture.lio.empty()) {
     throw InputError(
         fmt::format("{}: missing; LiDAR-inertial poses are needed", (capture.folder / "lio.tum").string()));
+  }
+  if (capture.scans.empty() && parts_needed(options, run.last).scans == Want::kYes) {
+    throw InputError(fmt::format("{}: no scans; without them only --registration prefusion runs",
+                                 (capture.folder / "lidar.csv").string()));
   }
   if (run.only_session && *run.only_session >= capture.sessions.size()) {
     throw UsageError(
@@ -196,8 +200,15 @@ Stage stage_from_name(std::string_view name) {
   throw UsageError(fmt::format("stage \"{}\" is none of prefusion, registration, posegraph, fusion", name));
 }
 
+CaptureParts parts_needed(const ReconstructionOptions& options, Stage last) {
+  CaptureParts parts{.images = Want::kNo, .scans = Want::kYes, .imu = Want::kNo};
+  if (options.registration == Registration::kPrefusion) parts.scans = Want::kIfUsable;
+  if (last < Stage::kRegistration) parts.scans = Want::kNo;
+  return parts;
+}
+
 Reconstruction reconstruct(const Capture& capture, const ReconstructionOptions& options, const ReconstructionRun& run) {
-  check_inputs(capture, run);
+  check_inputs(capture, options, run);
   const StageFiles stages(run.stages, run.resume, run_key(capture, options, run));
   std::vector<SessionState> sessions;
   Reconstruction result;

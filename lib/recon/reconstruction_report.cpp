@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "cmap/core/version.hpp"
 #include "recon/session_state.hpp"
 
@@ -10,11 +12,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+std::string number_or_dash(double value) { return std::isnan(value) ? "-" : fmt::format("{:.3f}", value); }
+
 std::string session_line(const SessionOutcome& s) {
   std::string line = fmt::format("{:<14} {:>6}", s.name, s.frames);
   if (!s.dropped.empty()) return line + "  dropped: " + s.dropped + "\n";
-  return line + fmt::format("  {:>8.4g}  {:>6.4f}  {:>9.4f}  {:>6}  {:>7.3f}  {:>7.3f}\n", s.scale_prefusion,
-                            s.scale_registration, s.linearity, s.scale_inlier ? "yes" : "no", s.overlap, s.rmse_m);
+  return line + fmt::format("  {:>8.4g}  {:>6.4f}  {:>9.4f}  {:>6}  {:>7}  {:>7}\n", s.scale_prefusion,
+                            s.scale_registration, s.linearity, s.scale_inlier ? "yes" : "no", number_or_dash(s.overlap),
+                            number_or_dash(s.rmse_m));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "cmap/core/error.hpp"
 #include "recon/session_state.hpp"
@@ -8,15 +9,31 @@
 namespace cmap {
 namespace {
 
+/// What the LiDAR saw around a session. Pre-fusion alone is only measured by it, and goes on without.
+LidarMap lidar_around(const Capture& capture, const ReconstructionOptions& options, const SessionPredictions& session,
+                      SessionOutcome& outcome) {
+  try {
+    return lidar_map(capture, session.frames.front().time_s, session.frames.back().time_s, options.lidar,
+                     options.prefusion.max_gap_s);
+  } catch (const InputError& error) {
+    if (options.registration != Registration::kPrefusion) throw;
+    outcome.flags.push_back(fmt::format("not compared with the LiDAR: {}", error.what()));
+    return {};
+  }
+}
+
 /// Moves one session, placed by pre-fusion.
 void register_one(const Capture& capture, const ReconstructionOptions& options, const SessionPredictions& session,
                   SessionState& state) {
   SessionOutcome& outcome = state.outcome;
+  if (capture.scans.empty()) {
+    outcome.overlap = outcome.rmse_m = std::numeric_limits<double>::quiet_NaN();
+    return;  // of pre-fusion alone, which it stays
+  }
   // Finer than the registration thins: its voxels then hold means of several.
   const SessionCloud cloud = session_cloud(session, state.T_world_session, state.min_confidence, options.points,
                                            options.registration_voxel_m / 2.0);
-  const LidarMap lidar = lidar_map(capture, session.frames.front().time_s, session.frames.back().time_s, options.lidar,
-                                   options.prefusion.max_gap_s);
+  const LidarMap lidar = lidar_around(capture, options, session, outcome);
   const LidarRegistration found = register_on_lidar(cloud, lidar.cloud, state.T_world_session, options.registration,
                                                     options.registration_voxel_m, outcome.prefusion_rmse_m);
   outcome.scale_registration = found.scale_change;

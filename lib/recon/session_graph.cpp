@@ -51,6 +51,12 @@ bool agrees(const PlacedSession& session, const OdometryPoses& odometry) {
 
 }  // namespace
 
+std::vector<double> times_of(const SessionPredictions& session) {
+  std::vector<double> times_s;
+  for (const PredictionFrame& frame : session.frames) times_s.push_back(frame.time_s);
+  return times_s;
+}
+
 std::vector<SessionFrame> frames_of(const SessionPredictions& session) {
   std::vector<SessionFrame> frames;
   for (std::size_t i = 0; i < session.frame_count(); ++i) {

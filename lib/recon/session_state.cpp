@@ -1,5 +1,7 @@
 #include "recon/session_state.hpp"
 
+#include <limits>
+
 #include "cmap/io/transform_file.hpp"
 #include "recon/usable_predictions.hpp"
 
@@ -25,6 +27,11 @@ Matrix matrix_from(const Json& json) {
 Json pose_json(const Eigen::Isometry3d& pose) { return numbers(pose.matrix()); }
 Eigen::Isometry3d pose_from(const Json& json) { return Eigen::Isometry3d(matrix_from<Eigen::Matrix4d>(json)); }
 
+/// JSON has no NaN and writes null.
+double number_or_nan(const Json& json) {
+  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+}
+
 SessionOutcome outcome_from(const Json& json) {
   SessionOutcome o;
   o.index = json.at("index");
@@ -36,8 +43,8 @@ SessionOutcome outcome_from(const Json& json) {
   o.rotation_corrected = json.at("rotation_corrected");
   o.scale_inlier = json.at("scale_inlier");
   o.prefusion_rmse_m = json.at("prefusion_rmse_m");
-  o.overlap = json.at("overlap");
-  o.rmse_m = json.at("rmse_m");
+  o.overlap = number_or_nan(json.at("overlap"));
+  o.rmse_m = number_or_nan(json.at("rmse_m"));
   o.flags = json.at("flags").get<std::vector<std::string>>();
   o.dropped = json.at("dropped").is_null() ? "" : json.at("dropped").get<std::string>();
   return o;
@@ -125,7 +132,7 @@ OdometryPoses odometry_poses(const Capture& capture, std::span<const double> tim
 }
 
 SessionPredictions read_corrected(const Capture& capture, const SessionState& state) {
-  SessionPredictions session = read_usable_predictions(capture.sessions[state.outcome.index]);
+  SessionPredictions session = read_usable_predictions(capture, state.outcome.index);
   if (state.center_factor == 1.0) return session;
   for (std::size_t frame = 0; frame < session.frame_count(); ++frame) {
     Eigen::Isometry3d& T_camera_session = session.T_camera_session[frame];

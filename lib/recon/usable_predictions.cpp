@@ -46,16 +46,19 @@ std::size_t forget_far(double farthest, SessionPredictions& session) {
 
 }  // namespace
 
-SessionPredictions read_usable_predictions(const std::filesystem::path& folder_or_npz) {
-  SessionPredictions session = read_session_predictions(folder_or_npz);
+void make_usable(const std::string& name, SessionPredictions& session) {
   const double farthest = kFarthest * median_depth(session);
-  const std::string name = folder_or_npz.string();
   require_near_cameras(name, session, farthest);
   if (const std::size_t n_far = forget_far(farthest, session); n_far > 0) {
     session.warnings.push_back(
         {"far_pixels", fmt::format("{}: {} of {} pixels are farther than {:g} median depths; they count as not seen",
                                    name, n_far, session.depth.size(), kFarthest)});
   }
+}
+
+SessionPredictions read_usable_predictions(const Capture& capture, std::size_t index) {
+  SessionPredictions session = read_session(capture, index);
+  make_usable(capture.sessions[index].string(), session);
   return session;
 }
 

@@ -55,7 +55,9 @@ inline void try_session(std::span<const std::byte> input) {
     read_depth(store, session, frames);
     read_images(store, session, frames);
     read_world_points(store, session, frames);
-    read_cameras(store, session, frames);
+    read_intrinsics(store, session, frames);
+    read_poses(store, session, frames);
+    make_first_camera_the_frame(store, session);
     const std::size_t pixels = frames * session.pixels_per_frame();
     if (session.depth.size() != pixels || session.images.size() != pixels) __builtin_trap();
     for (const float depth : session.depth) {

@@ -263,6 +263,137 @@ TEST(CaptureWriter, WrittenAndReadBackIsIdentical) {
   EXPECT_TRUE(fs::exists(folder / "new/truth/scales.json"));
 }
 
+/// image_s is 0.5: recorded 10.5 and 10.75 s are 11 and 11.25 s of the LiDAR's clock, in either form of a session.
+TEST(Capture, TheOffsetOfImagesIsThatOfFrames) {
+  const TempFolder folder;
+  CaptureText text;
+  const SessionText session;
+  for (const auto& [name, content] : session.files) text.files["predictions/a/" + name] = content;
+  text.files["predictions/b.npz"] = session.npz().str();
+  text.files["predictions/b.frames.csv"] = text.files["predictions/a/frames.csv"];
+  text.write_to(folder.path());
+  const Capture capture = open_capture(folder.path());
+  for (const std::size_t k : {0U, 1U}) {
+    const SessionPredictions read = read_session(capture, k);
+    EXPECT_EQ(read.frames[0].time_s, 11.0);
+    EXPECT_EQ(read.frames[1].time_s, 11.25);
+  }
+  EXPECT_EQ(read_session_predictions(capture.sessions[0]).frames[0].time_s, 10.5) << "as recorded";
+}
+
+TEST(CaptureWriter, FramesAreRecordedWithoutTheOffset) {
+  const TempFolder folder;
+  {
+    CaptureWriter writer(folder / "new", calibration());
+    writer.add_session(SessionText().read());
+    std::ofstream(writer.add_image(1, ".png")) << "not looked at";
+    writer.add_scan(scan_at(1));
+    writer.commit();
+  }
+  EXPECT_THAT(read_bytes(folder / "new/predictions/session_0000/frames.csv"), HasSubstr("\n0,10,a.jpg,30,20\n"));
+  EXPECT_EQ(read_session(open_capture(folder / "new"), 0).frames[0].time_s, 10.5);
+}
+
+/// Which NPZ file a frames.csv beside several belongs to, nobody can tell.
+TEST(Capture, OneTableOfFramesForSeveralNpz) {
+  CaptureText text;
+  for (const char* name : {"a.npz", "b.npz", "frames.csv"}) text.files[std::string("predictions/") + name] = "x";
+  const auto refused = [&] { return input_error([&] { text.open(); }); };
+  EXPECT_THAT(refused(), HasSubstr("predictions/frames.csv: of which session?"));
+  EXPECT_THAT(refused(), HasSubstr("missing: a.frames.csv, b.frames.csv"));
+  text.files["predictions/a.frames.csv"] = "x";
+  EXPECT_THAT(refused(), HasSubstr("missing: b.frames.csv"));
+  text.files["predictions/b.frames.csv"] = "x";
+  EXPECT_EQ(refused(), "");
+  text.files.erase("predictions/a.npz");
+  text.files.erase("predictions/b.frames.csv");
+  text.files["predictions/c/depth.npy"] = "x";
+  EXPECT_EQ(refused(), "") << "one NPZ file, and a folder, which has a table of its own";
+}
+
+TEST(Capture, PartsThatNobodyWantsMayBeMissingOrBroken) {
+  CaptureText text;
+  text.files.erase("images.csv");
+  text.files["lidar.csv"] = "no table";
+  text.files["imu.csv"] = "no table";
+  text.files["predictions"] = "no folder";
+  const TempFolder folder;
+  text.write_to(folder.path());
+  const Capture capture = open_capture(folder.path(), {Want::kNo, Want::kNo, Want::kNo, Want::kNo});
+  EXPECT_TRUE(capture.images.empty() && capture.scans.empty() && capture.imu.empty());
+  EXPECT_EQ(capture.lio.size(), 2U);
+  EXPECT_TRUE(capture.warnings.empty());
+}
+
+TEST(Capture, PartsThatAreWantedIfUsable) {
+  const CaptureParts parts{.images = Want::kIfUsable, .scans = Want::kIfUsable};
+  const auto opened = [&](const CaptureText& text) {
+    const TempFolder folder;
+    text.write_to(folder.path());
+    return open_capture(folder.path(), parts);
+  };
+  CaptureText text;
+  EXPECT_EQ(opened(text).scans.size(), 1U);
+  text.files.erase("lidar/a.pcd");
+  text.files.erase("images.csv");
+  const Capture capture = opened(text);
+  EXPECT_TRUE(capture.images.empty() && capture.scans.empty());
+  ASSERT_EQ(capture.warnings.size(), 1U);
+  EXPECT_EQ(capture.warnings[0].id, "part_left_out");
+  EXPECT_THAT(capture.warnings[0].message, HasSubstr("lidar/a.pcd is no file; the run goes on without"));
+}
+
+/// All that is wrong at once, and the rest is read.
+TEST(Capture, EveryFaultIsListed) {
+  CaptureText text;
+  std::string& json = text.files["capture.json"];
+  json.replace(json.find("\"version\": 1"), 12, "\"version\": 3, \"moon\": 1");
+  json.replace(json.find("[25.5, 26,"), 10, "[-25.5, 26,");
+  json.replace(json.find("[0,-1,0,0.5]"), 12, "[0,1,0,0.5]");
+  text.files["images.csv"] = "timestamp_s,file\n1,images/a.jpg\n1,images/b.jpg\n3,images/c.jpg\nx,images/a.jpg\n";
+  text.files["lidar.csv"] = "time,file\n";
+  text.files["imu.csv"] += "1,0,0,0,0,0,1\n";
+  text.files["lio.tum"] = "moon\n";
+  text.files["predictions/a.npz"] = text.files["predictions/b.npz"] = text.files["predictions/frames.csv"] = "x";
+  const TempFolder folder;
+  text.write_to(folder.path());
+  std::vector<std::string> faults;
+  const Capture capture = open_capture(folder.path(), {}, Faults(faults));
+  const char* const kExpected[] = {"capture.json: unknown key \"moon\"", "capture.json: version is 3",
+                                   "capture.json: camera: fx is -25.5",  "capture.json: T_imu_lidar: no rotation",
+                                   "images.csv: line 3: time 1 s",       "images.csv: line 4: ",
+                                   "images.csv: line 5: timestamp_s",    "lidar.csv: line 1: the columns",
+                                   "imu.csv: line 4: time 1 s",          "lio.tum: ",
+                                   "predictions/frames.csv: of which"};
+  ASSERT_EQ(faults.size(), std::size(kExpected)) << fmt::format("{}", fmt::join(faults, "\n"));
+  for (std::size_t i = 0; i < faults.size(); ++i) EXPECT_THAT(faults[i], HasSubstr(kExpected[i]));
+  EXPECT_EQ(capture.images.size(), 1U);
+  EXPECT_EQ(capture.calibration.image_time_offset_s, 0.5);
+  EXPECT_EQ(capture.sessions.size(), 2U);
+}
+
+TEST(Capture, ALongListOfFaultyRowsIsCut) {
+  CaptureText text;
+  for (int i = 0; i < 50; ++i) text.files["lidar.csv"] += fmt::format("{},lidar/missing.pcd\n", i + 2);
+  const TempFolder folder;
+  text.write_to(folder.path());
+  std::vector<std::string> faults;
+  open_capture(folder.path(), {}, Faults(faults));
+  ASSERT_EQ(faults.size(), 11U);
+  EXPECT_THAT(faults.back(), HasSubstr("lidar.csv: line 12: 10 rows are faulty so far; the rest was not read"));
+}
+
+TEST(Capture, ACameraOfAnotherSizeIsDoubted) {
+  CaptureText text;
+  std::string& json = text.files["capture.json"];
+  json.replace(json.find("14.5, 9.5"), 9, "320, 240");
+  const Capture capture = text.open();
+  ASSERT_EQ(capture.warnings.size(), 1U);
+  EXPECT_EQ(capture.warnings[0].id, "camera_of_another_size");
+  EXPECT_THAT(capture.warnings[0].message,
+              HasSubstr("capture.json: camera.K: cx, cy = 320, 240 are not near the middle of a picture of 30 x 20"));
+}
+
 TEST(CaptureWriter, WithoutCommitNothingIsLeft) {
   const TempFolder folder;
   {
@@ -289,12 +420,9 @@ TEST(CaptureWriter, KilledItLeavesNoCapture) {
   ASSERT_TRUE(WIFSIGNALED(status));
   EXPECT_FALSE(fs::exists(folder / "new"));
   EXPECT_THAT(input_error([&] { open_capture(folder / "new.partial"); }), HasSubstr("capture.json: no such file"));
-  try {
-    const CaptureWriter again(folder / "new", calibration());
-    ADD_FAILURE() << "the rest of another run was taken over";
-  } catch (const UsageError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("new.partial is there: left by a run that was stopped"));
-  }
+  write_small_capture(folder / "new");
+  EXPECT_EQ(open_capture(folder / "new").scans.size(), 2U) << "what was left is replaced";
+  EXPECT_FALSE(fs::exists(folder / "new.partial"));
 }
 
 TEST(CaptureWriter, RefusesWhatWouldNotReadBack) {

@@ -64,7 +64,9 @@ TEST(FuzzRegressions, EverySessionAndCaptureSeedIsRead) {
     const ArrayStore store("seed", std::as_bytes(std::span(bytes)));
     read_depth(store, session, frames);
     read_images(store, session, frames);
-    read_cameras(store, session, frames);
+    read_intrinsics(store, session, frames);
+    read_poses(store, session, frames);
+    make_first_camera_the_frame(store, session);
     EXPECT_EQ(frames, 2U);
   }
   EXPECT_EQ(parse_capture_json(bytes_of("capture/pinhole"), "seed").calibration.camera.distortion.size(), 5U);

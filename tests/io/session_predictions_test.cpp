@@ -85,11 +85,138 @@ TEST(SessionPredictions, ReadsPredictionsNpz) {
 TEST(SessionPredictions, AnNpzOfManyHasItsOwnFrames) {
   SessionText text;
   const TempFolder folder;
+  const auto read = [&] { return read_session_predictions(folder / "session_0000.npz"); };
   folder.write("session_0000.npz", text.npz().str());
-  EXPECT_THAT(input_error([&] { read_session_predictions(folder / "session_0000.npz"); }),
-              HasSubstr("frames.csv: no such file"));
+  EXPECT_THAT(input_error(read), HasSubstr("session_0000.frames.csv: no such file"));
+  folder.write("frames.csv", text["frames.csv"]);
+  expect_hand_made_session(read());  // there is no other that it could be of
+  folder.write("session_0001.npz", text.npz().str());
+  EXPECT_THAT(input_error(read), HasSubstr("session_0000.frames.csv: no such file; the times of the frames of "
+                                           "session_0000.npz are expected there, as"));
   folder.write("session_0000.frames.csv", text["frames.csv"]);
-  expect_hand_made_session(read_session_predictions(folder / "session_0000.npz"));
+  expect_hand_made_session(read());
+}
+
+TEST(SessionPredictions, AFolderOfItsOwnSaysWhoseFramesTheyAre) {
+  SessionText text;
+  const TempFolder folder;
+  folder.write("predictions.npz", text.npz().str());
+  folder.write("features.npz", "something else");
+  folder.write("frames.csv", text["frames.csv"]);
+  expect_hand_made_session(read_session_predictions(folder.path()));
+}
+
+/// Bicubic resizing oversteps by some percent; -0.05 and 1.05 are black and white.
+TEST(SessionPredictions, PictureValuesJustOutsideAreClampedAndCounted) {
+  SessionText text;
+  std::vector<float> values(36, 0.5F);
+  values[0] = -0.05F;
+  values[1] = 1.05F;
+  values[35] = 1.0000001F;
+  text["images.npy"] = npy_text("'<f4'", "(2, 2, 3, 3)", raw(values));
+  const SessionPredictions session = text.read();
+  EXPECT_EQ(session.images.front(), (Rgb8{0, 255, 128}));
+  EXPECT_EQ(session.images.back(), (Rgb8{128, 128, 255}));
+  ASSERT_EQ(session.warnings.size(), 1U);
+  EXPECT_EQ(session.warnings[0].id, "clamped_picture");
+  EXPECT_THAT(session.warnings[0].message, HasSubstr("images.npy: 3 of 36 values are outside [0,1], by up to 0.05"));
+}
+
+TEST(SessionPredictions, PicturesOfOtherRangesAreRefusedWithAHint) {
+  const auto refusal_of = [](float low, float high) {
+    SessionText text;
+    std::vector<float> values(36, 0.5F);
+    values[3] = low;
+    values[4] = high;
+    text["images.npy"] = npy_text("'<f4'", "(2, 2, 3, 3)", raw(values));
+    return input_error([&] { text.read(); });
+  };
+  EXPECT_THAT(refusal_of(0.0F, 254.0F),
+              HasSubstr("images.npy: holds 254; float images lie in [0,1]; are these 0 to 255"));
+  EXPECT_THAT(refusal_of(-0.9F, 0.9F), HasSubstr("holds -0.9; float images lie in [0,1]; are these -1 to 1?"));
+  EXPECT_THAT(refusal_of(-2.1F, 2.6F), HasSubstr("holds -2.1; float images lie in [0,1]; were they normalized"));
+  EXPECT_THAT(refusal_of(-1e6F, 0.5F), HasSubstr("holds -1e+06; float images lie in [0,1]"));
+}
+
+/// The whole 4x4 matrix, as many exporters save it.
+TEST(SessionPredictions, ReadsSquarePoses) {
+  SessionText text;
+  std::vector<double> square;
+  const std::vector<double> poses = SessionText::poses();
+  for (const int frame : {0, 1}) {
+    square.insert(square.end(), poses.begin() + 12 * frame, poses.begin() + 12 * (frame + 1));
+    square.insert(square.end(), {0, 0, 0, 1});
+  }
+  text["extrinsic.npy"] = npy_text("'<f8'", "(2, 4, 4)", raw(square));
+  expect_hand_made_session(text.read());
+  square[15] = 2.0;
+  text["extrinsic.npy"] = npy_text("'<f8'", "(2, 4, 4)", raw(square));
+  EXPECT_THAT(input_error([&] { text.read(); }), HasSubstr("extrinsic.npy: frame 0: the last row is not 0 0 0 1"));
+}
+
+/// Of the camera's own picture, 30 x 20, in place of the network's 3 x 2; of shares; of a picture turned.
+TEST(SessionPredictions, IntrinsicsOfAnotherSizeAreNamed) {
+  const auto refusal_of = [](double fx, double fy, double cx, double cy) {
+    SessionText text;
+    std::vector<double> matrices = SessionText::matrices();
+    matrices[9] = fx;
+    matrices[11] = cx;
+    matrices[13] = fy;
+    matrices[14] = cy;
+    text["intrinsic.npy"] = npy_text("'<f8'", "(2, 3, 3)", raw(matrices));
+    return input_error([&] { text.read(); });
+  };
+  EXPECT_EQ(refusal_of(4, 5, 0.76, 1.49), "");
+  EXPECT_THAT(refusal_of(2, 2.5, 0.75, 0.5), HasSubstr("are they of one of about 2 x 1? Multiply fx and cx by 2, fy"))
+      << "half the size";
+  EXPECT_THAT(refusal_of(40, 50, 15, 10),
+              HasSubstr("intrinsic.npy: frame 1: cx, cy = 15, 10 are not near the middle of "
+                        "a picture of 3 x 2 pixels; are they of one of about 30 x 20? "
+                        "Multiply fx and cx by 0.1, fy and cy by 0.1"));
+  EXPECT_THAT(refusal_of(1.3, 2.5, 0.5, 0.4),
+              HasSubstr("are they shares of its size? Multiply fx and cx by 3, fy and cy by 2"));
+  EXPECT_THAT(refusal_of(4, 5, 1.5, 1.6), HasSubstr("cx, cy = 1.5, 1.6 are not near the middle"));
+  EXPECT_THAT(refusal_of(4, 5, -1, 1), HasSubstr("cx, cy = -1, 1 are not near the middle"));
+}
+
+TEST(SessionPredictions, EveryFaultIsListed) {
+  SessionText text;
+  text["meta.json"] = R"({"version":1,"frames":9,"width":3,"height":2,"pose_convention":"c2w","depth_type":"z"})";
+  text["frames.csv"] = "index,timestamp_s,image_name,orig_w,orig_h\n0,x,a.jpg,30,20\n1,2,b.jpg,30,0\n2,3,b.jpg,30,20\n";
+  text["images.npy"] = npy_text("'<f4'", "(2, 2, 3, 3)", raw(std::vector<float>(36, 200.0F)));
+  text["extrinsic.npy"] = npy_text("'<f8'", "(2, 3)", raw(std::vector<double>(6, 0.0)));
+  text.erase("intrinsic.npy");
+  const TempFolder folder;
+  text.write_to(folder);
+  std::vector<std::string> faults;
+  read_session_predictions(folder.path(), Faults(faults));
+  const char* const kExpected[] = {"meta.json: frames is 9",
+                                   "meta.json: pose_convention is \"c2w\"",
+                                   "meta.json: key \"intrinsics_pixel_origin\" is missing",
+                                   "frames.csv: line 2: timestamp_s is 'x'",
+                                   "frames.csv: line 3: an image side of 0",
+                                   "frames.csv: 3 frames, but 2 in the arrays",
+                                   "images.npy: holds 200",
+                                   "extrinsic.npy: has the shape (2, 3)",
+                                   "intrinsic.npy: no such file"};
+  ASSERT_EQ(faults.size(), std::size(kExpected)) << fmt::format("{}", fmt::join(faults, "\n"));
+  for (std::size_t i = 0; i < faults.size(); ++i) EXPECT_THAT(faults[i], HasSubstr(kExpected[i]));
+}
+
+/// Without the depth nobody knows the sizes; whether the rest is there can be told.
+TEST(SessionPredictions, FaultsBesideAMissingDepth) {
+  SessionText text;
+  text.erase("depth.npy");
+  text.erase("extrinsic.npy");
+  text["frames.csv"] = "moon\n";
+  const TempFolder folder;
+  text.write_to(folder);
+  std::vector<std::string> faults;
+  read_session_predictions(folder.path(), Faults(faults));
+  ASSERT_EQ(faults.size(), 3U) << fmt::format("{}", fmt::join(faults, "\n"));
+  EXPECT_THAT(faults[0], HasSubstr("depth.npy: no such file"));
+  EXPECT_THAT(faults[1], HasSubstr("frames.csv: line 1: the columns"));
+  EXPECT_THAT(faults[2], HasSubstr("extrinsic.npy: no such file"));
 }
 
 TEST(SessionPredictions, HalfFloatsAndOtherTypes) {

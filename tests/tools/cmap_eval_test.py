@@ -133,8 +133,8 @@ class Results(CmapEval):
         camera = {"model": "pinhole", "width": 4, "height": 4, "K": [4, 4, 2, 2], "distortion": []}
         (capture / "capture.json").write_text(json.dumps(
             {"version": 1, "camera": camera, "T_imu_lidar": identity, "T_lidar_camera": identity}))
-        (capture / "image.png").write_text("not opened")
-        (capture / "images.csv").write_text("timestamp_s,file\n0.0,image.png\n")
+        for name in ("images.csv", "imu.csv", "predictions"):
+            (capture / name).write_text("not opened")
         (capture / "lidar.csv").write_text("timestamp_s,file\n" + "".join(f"{0.1 * i:.1f},lidar/0.pcd\n" for i in range(20)))
         (capture / "lidar" / "0.pcd").write_text(
             "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA ascii\n1 2 3\n")

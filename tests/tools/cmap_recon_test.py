@@ -5,9 +5,10 @@ CMAP_SOURCE_DIR. The preset is a straight line, so every run is one for a path w
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
-import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -15,53 +16,19 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "oracle"))
 from ply import read_ply  # noqa: E402
+from recon_testing import (DONE, INPUT, PROGRAM, UNSUPPORTED, USAGE, CaptureCase, edit_json, lines_kept, swapped,
+                           times_moved)
 
-PROGRAM = Path(os.environ["CMAP_RECON"]).resolve()
-SIMULATE = Path(os.environ["CMAP_SIMULATE"]).resolve()
 SOURCE = Path(os.environ["CMAP_SOURCE_DIR"]).resolve()
 DATA = Path(os.environ.get("CMAP_DATA_DIR", SOURCE / "../shared/data"))
 SANITIZED = "-fsanitize" in os.environ.get("CMAP_CXX_FLAGS", "")
-DONE, USAGE, INPUT, UNSUPPORTED = 0, 2, 3, 4
 
-# Six seconds of a street in four sessions (6, 6, 6 and 3 frames, two shared with the next), few pixels and beams.
-QUICK = ["route.length_m=24", "truth.map_points_per_m2=5", "camera.width_px=160", "camera.height_px=120",
-         "camera.focal_px=110", "predictions.width_px=70", "predictions.session_length=6", "lidar.azimuth_steps=300"]
 # Session scales from so few frames: VGGT's path, bent by some percent, and 3 frames at the end.
 SCALE_TOLERANCE = 0.06
 RESULTS = ("map.ply", "trajectory.tum", "sessions.json", "report.json")
 
 
-def lines_kept(path, keep):
-    """A table without the rows that `keep` refuses; comments and the header stay."""
-    rows = path.read_text().splitlines()
-    path.write_text("".join(row + "\n" for row in rows if not row[0].isdigit() or keep(row)))
-
-
-def swapped(path, row, column=0, separator=","):
-    """The times of a row and the next change places."""
-    rows = [line.split(separator) for line in path.read_text().splitlines()]
-    rows[row][column], rows[row + 1][column] = rows[row + 1][column], rows[row][column]
-    path.write_text("".join(separator.join(cells) + "\n" for cells in rows))
-
-
-class Recon(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="cmap-recon-")
-        cls.addClassCleanup(folder.cleanup)
-        cls.simulated = Path(folder.name) / "capture"
-        settings = [argument for setting in QUICK for argument in ("--set", setting)]
-        subprocess.run([SIMULATE, "small_town", *settings, "-o", cls.simulated], check=True)
-        cls.truth = json.loads((cls.simulated / "truth" / "scales.json").read_text())["scales"]
-        assert len(cls.truth) == 4
-
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="cmap-recon-")
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
-        self.capture, self.output = self.folder / "capture", self.folder / "map"
-        shutil.copytree(self.simulated, self.capture)
-
+class Recon(CaptureCase):
     def recon(self, *arguments, code=DONE, output=None, capture=None):
         command = [PROGRAM, capture or self.capture, "-o", output or self.output, "--quiet", *arguments]
         result = subprocess.run([str(argument) for argument in command], capture_output=True, text=True)
@@ -81,16 +48,6 @@ class Recon(unittest.TestCase):
         found = json.loads(((output or self.output) / "sessions.json").read_text())["sessions"]
         return {session["name"]: session for session in found}
 
-    def session(self, k):
-        return self.capture / "predictions" / f"session_{k:04}"
-
-    def change(self, k, name, change):
-        """An array of session k, in place, or for what `change` returns."""
-        path = self.session(k) / f"{name}.npy"
-        array = np.load(path)
-        changed = change(array)
-        np.save(path, array if changed is None else changed)
-
     def keep_frames(self, k, frames):
         for path in self.session(k).glob("*.npy"):
             np.save(path, np.load(path)[frames])
@@ -101,19 +58,13 @@ class Recon(unittest.TestCase):
         meta = self.session(k) / "meta.json"
         meta.write_text(json.dumps({**json.loads(meta.read_text()), "frames": len(frames)}))
 
-    def remove_sessions(self, *ks):
-        for k in ks:
-            shutil.rmtree(self.session(k))
-
-    def times(self, k):
-        return [float(row.split(",")[1]) for row in (self.session(k) / "frames.csv").read_text().splitlines()[1:]]
-
-    def check_scales(self, *ks):
+    def check_scales(self, *ks, suffix=""):
         found = self.sessions()
         for k in ks:
             name = f"session_{k:04}"
-            self.assertIsNone(found[name]["dropped"])
-            self.assertLess(abs(np.log(found[name]["scale"] / self.truth[name])), SCALE_TOLERANCE, name)
+            session = found[name + suffix]
+            self.assertIsNone(session["dropped"])
+            self.assertLess(abs(np.log(session["scale"] / self.truth[name])), SCALE_TOLERANCE, name)
 
     def check_dropped(self, k, reason):
         """Session k is left out with this reason, told on stderr; the others are as good as ever."""
@@ -284,6 +235,39 @@ class Recon(unittest.TestCase):
         lines_kept(self.capture / "lidar.csv", lambda row: False)
         self.refused(INPUT, "lidar.csv", "lists no file")
 
+    def test_pictures_are_never_read(self):
+        self.recon()
+        expected = (self.output / "map.ply").read_bytes()
+        for broken in ("images", "images.csv", "imu.csv"):
+            path = self.capture / broken
+            shutil.rmtree(path) if path.is_dir() else path.write_text("moon")
+            self.recon()
+            self.assertEqual((self.output / "map.ply").read_bytes(), expected, broken)
+        (self.capture / "images.csv").unlink()
+        self.recon()
+
+    def test_scans_are_read_by_registration_alone(self):
+        self.recon("--registration", "prefusion", "--set", "pose_graph=false")
+        expected = (self.output / "map.ply").read_bytes()
+        self.assertGreater(self.sessions()["session_0000"]["overlap"], 0.5)
+        scan = self.capture / "lidar" / "000030.pcd"
+        scan.write_bytes(scan.read_bytes()[:300])
+        message = self.recon("--registration", "prefusion", "--set", "pose_graph=false")
+        self.assertIn("not compared with the LiDAR: ", message)
+        self.assertEqual((self.output / "map.ply").read_bytes(), expected)
+        shutil.rmtree(self.capture / "lidar")
+        message = self.recon("--registration", "prefusion", "--set", "pose_graph=false")
+        self.assertIn("000000.pcd is no file; the run goes on without", message)
+        (self.capture / "lidar.csv").unlink()
+        self.assertEqual(self.recon("--registration", "prefusion", "--set", "pose_graph=false"), "")
+        self.assertEqual((self.output / "map.ply").read_bytes(), expected)
+        self.assertEqual({session["overlap"] for session in self.sessions().values()}, {None}, "not measured")
+        self.assertEqual(self.recon("--registration", "prefusion", "--set", "pose_graph=false", "--resume"), "")
+        self.recon("--registration", "prefusion")
+        self.recon("--stop-after", "prefusion")
+        shutil.rmtree(self.output)
+        self.refused(INPUT, "lidar.csv: no such file")
+
     def test_damaged_scan(self):
         scan = self.capture / "lidar" / "000030.pcd"
         scan.write_bytes(scan.read_bytes()[:300])
@@ -426,12 +410,11 @@ class Recon(unittest.TestCase):
     # Times.
 
     def test_times_out_of_order(self):
-        for table in ("lidar.csv", "images.csv"):
-            path = self.capture / table
-            good = path.read_text()
-            swapped(path, 5)
-            self.refused(INPUT, f"{table}: line 7: ", "is not after")
-            path.write_text(good)
+        path = self.capture / "lidar.csv"
+        good = path.read_text()
+        swapped(path, 5)
+        self.refused(INPUT, "lidar.csv: line 7: ", "is not after")
+        path.write_text(good)
         swapped(self.session(1) / "frames.csv", 2, column=1)
         self.check_dropped(1, "session_0001/frames.csv: line 4: ")
 
@@ -443,17 +426,164 @@ class Recon(unittest.TestCase):
         self.check_scales(0, 1, 2, 3)
 
     def test_poses_of_another_time(self):
-        table = self.session(1) / "frames.csv"
-        rows = [row.split(",") for row in table.read_text().splitlines()]
-        for row in rows[1:]:
-            row[1] = str(float(row[1]) + 1e6)
-        table.write_text("".join(",".join(row) + "\n" for row in rows))
-        self.check_dropped(1, "no frame has a LiDAR-inertial pose at its time")
+        first, last = self.times(1)[0], self.times(1)[-1]
+        poses = [float(row.split()[0]) for row in (self.capture / "lio.tum").read_text().splitlines() if row[0] != "#"]
+        times_moved(self.session(1) / "frames.csv", 1, 1e6)
+        self.check_dropped(1, "no frame has a LiDAR-inertial pose at its time: the frames are from "
+                              f"{first + 1e6:.3f} to {last + 1e6:.3f} s, the poses from {poses[0]:.3f} to "
+                              f"{poses[-1]:.3f} s, with gaps of at most 0.15 s allowed")
         shutil.rmtree(self.output)
         lines_kept(self.capture / "lio.tum", lambda row: float(row.split()[0]) < 0.15)
-        self.refused(UNSUPPORTED, "4 of 4 sessions had to be dropped", "no frame has a LiDAR-inertial pose")
+        self.refused(UNSUPPORTED, "4 of 4 sessions had to be dropped", "no frame has a LiDAR-inertial pose",
+                     "gaps of at most 0.15 s")
+
+    def test_poses_too_far_apart(self):
+        kept = []
+        lines_kept(self.capture / "lio.tum", lambda row: kept.append(row) or len(kept) % 10 == 1)
+        self.refused(UNSUPPORTED, "1 s or more apart around the frames; at most 0.15 s are allowed (max_gap_s)")
+        self.recon("--set", "max_gap_s=1.1")
+
+    def test_a_stated_offset_of_the_image_clock(self):
+        """Recorded time + image_s = time of the LiDAR, for frames as well; so it is where odometry has them."""
+        self.recon("--stop-after", "prefusion")
+        expected, path = self.sessions(), (self.output / "trajectory.tum").read_text()
+        offset = json.loads((self.capture / "capture.json").read_text())["time_offset"]
+        for by_s in (0.5, -0.25):
+            shutil.rmtree(self.capture)
+            shutil.copytree(self.simulated, self.capture)
+            times_moved(self.capture / "images.csv", 0, -by_s)
+            for k in range(4):
+                times_moved(self.session(k) / "frames.csv", 1, -by_s)
+                if k % 2 == 1:
+                    self.pack(k)
+            edit_json(self.capture / "capture.json", time_offset={**offset, "image_s": by_s})
+            self.recon("--stop-after", "prefusion")
+            for name, session in self.sessions().items():
+                self.assertLess(abs(session["scale"] / expected[name.removesuffix(".npz")]["scale"] - 1), 1e-6)
+            found = np.loadtxt(self.output / "trajectory.tum")
+            np.testing.assert_allclose(found, np.loadtxt(path.splitlines()), atol=1e-6)
+        edit_json(self.capture / "capture.json", time_offset={**offset, "image_s": 0.0})
+        self.recon("--stop-after", "prefusion")
+        worst = max(abs(session["scale"] / expected[name.removesuffix(".npz")]["scale"] - 1)
+                    for name, session in self.sessions().items())
+        self.assertGreater(worst, 1e-3, "the offset makes a difference")
+
+    # Whose frames.
+
+    def test_one_table_of_frames_for_several_npz(self):
+        for k in range(4):
+            self.pack(k)
+        self.recon()
+        self.check_scales(*range(4), suffix=".npz")
+        shutil.rmtree(self.output)
+        (self.capture / "predictions/session_0000.frames.csv").rename(self.capture / "predictions/frames.csv")
+        self.refused(INPUT, "predictions/frames.csv: of which session?", "missing: session_0000.frames.csv")
+        (self.capture / "predictions/frames.csv").unlink()
+        message = self.recon()
+        self.assertIn("session_0000.npz: dropped: ", message)
+        self.assertIn("session_0000.frames.csv: no such file", message)
+
+    def test_a_copied_table_of_frames(self):
+        shutil.copy(self.session(0) / "frames.csv", self.session(1) / "frames.csv")
+        self.check_flag(1, "has the very times of session_0000; is its frames.csv a copy?", self.recon())
+
+    # Poses in another convention.
+
+    def convert_poses(self, change):
+        """Of all sessions; `change` gets and gives 4x4 matrices."""
+        def of_session(poses):
+            square = np.concatenate([poses, np.tile([[[0.0, 0.0, 0.0, 1.0]]], (len(poses), 1, 1))], axis=1)
+            return np.array([change(T)[:3] for T in square])
+
+        for k in range(4):
+            self.change(k, "extrinsic", of_session)
+
+    def test_poses_in_another_convention(self):
+        opengl = np.diag([1.0, -1.0, -1.0, 1.0])
+        for change, name in ((np.linalg.inv, "camera-to-world"), (lambda T: opengl @ T, "OpenGL's axes"),
+                             (lambda T: np.linalg.inv(opengl @ T), "camera-to-world in OpenGL's axes"),
+                             (lambda T: opengl @ T @ opengl, "OpenGL's axes")):
+            shutil.rmtree(self.capture)
+            shutil.copytree(self.simulated, self.capture)
+            self.convert_poses(change)
+            self.refused(UNSUPPORTED, "session_0000: extrinsic: the poses contradict the LiDAR-inertial ones", name,
+                         "camera-from-world in OpenCV's axes (x right, y down, z forward)")
+
+    def test_one_session_in_another_convention(self):
+        self.change(1, "extrinsic", lambda poses: np.array(
+            [np.linalg.inv(np.vstack([pose, [0, 0, 0, 1]]))[:3] for pose in poses]))
+        self.check_dropped(1, "agree with them as camera-to-world")
+
+    def test_intrinsics_of_another_size(self):
+        self.change(1, "intrinsic", lambda cameras: cameras * np.array([[4.0], [4.0], [1.0]]))
+        self.check_dropped(1, "are they of one of about 280 x 224? Multiply fx and cx by 0.25")
+
+    def test_pictures_just_outside_their_range(self):
+        def overstep(images):
+            values = images.astype(np.float32) / 255
+            values[0, 0, 0] = [-0.02, 1.03, 0.5]
+            return values
+
+        self.change(1, "images", overstep)
+        message = self.recon()
+        self.check_flag(1, "2 of 70560 values are outside [0,1], by up to 0.03", message)
+        self.check_scales(0, 1, 2, 3)
 
     # Outputs.
+
+    def test_the_capture_is_no_place_for_results(self):
+        for name in (".", "predictions", "predictions/session_0000", "lidar", "images/new", "truth", "new/.."):
+            message = self.recon(output=self.capture / name, code=USAGE)
+            self.assertIn("lies in the capture that is read", message)
+        link = self.folder / "link"
+        link.symlink_to(self.capture)
+        self.assertIn("link: lies in the capture", self.recon(output=link, code=USAGE))
+        for name in ("images/000000.jpg", "truth/preview.png"):
+            message = self.recon("--figure", self.capture / name, code=USAGE)
+            self.assertIn(f"{name}: lies in the capture that is read", message)
+        self.assertEqual(self.contents(self.capture), self.contents(self.simulated))
+        self.recon("--stop-after", "prefusion", output=self.capture / "map")
+
+    def test_the_reference_is_not_overwritten(self):
+        self.recon()
+        before = (self.output / "map.ply").read_bytes()
+        self.assertIn("would overwrite", self.recon("--evaluate", self.output / "map.ply", code=USAGE))
+        self.assertEqual((self.output / "map.ply").read_bytes(), before)
+
+    @staticmethod
+    def contents(folder):
+        return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+    def start(self):
+        command = [PROGRAM, self.capture, "-o", self.output, "--quiet"]
+        return subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+
+    def test_two_at_once_into_one_folder(self):
+        runs = [self.start() for _ in range(3)]
+        messages = [run.communicate()[1] for run in runs]
+        for run, message in zip(runs, messages):
+            self.assertIn(run.returncode, (DONE, USAGE), message)
+            if run.returncode == USAGE:
+                self.assertIn(f"{self.output}: cannot be written: another program is writing into it", message)
+        self.assertIn(DONE, [run.returncode for run in runs])
+        found = self.contents(self.output)
+        self.recon(output=self.folder / "alone")
+        self.assertEqual(found["map.ply"], (self.folder / "alone" / "map.ply").read_bytes())
+
+    def test_a_stopped_run_is_not_in_the_way(self):
+        self.recon(output=self.folder / "alone")
+        expected = (self.folder / "alone" / "map.ply").read_bytes()
+        for delay_s in (0.02, 0.1, 0.2, 0.4, 0.8):
+            for how in (signal.SIGKILL, signal.SIGTERM, signal.SIGINT):
+                run = self.start()
+                time.sleep(delay_s)
+                run.send_signal(how)
+                run.communicate()
+                for name in self.contents(self.output) if self.output.exists() else ():
+                    if name == "map.ply":
+                        self.assertEqual((self.output / name).read_bytes(), expected, "whole or not there")
+        self.recon("--resume")
+        self.assertEqual((self.output / "map.ply").read_bytes(), expected)
 
     def test_outputs_that_cannot_be_written(self):
         self.assertIn("/proc/nowhere", self.recon(output="/proc/nowhere", code=USAGE))

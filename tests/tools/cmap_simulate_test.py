@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -108,6 +109,41 @@ class Simulate(unittest.TestCase):
         (taken / "mine").write_text("mine")
         self.assertIn("taken", self.simulate(*QUICK, "-o", taken, code=USAGE).stderr)
         self.assertEqual([path.name for path in taken.iterdir()], ["mine"])
+
+    def start(self):
+        return subprocess.Popen([PROGRAM, *QUICK, "-o", self.folder / "capture", "--quiet"], stderr=subprocess.PIPE,
+                                text=True)
+
+    def test_a_stopped_run_is_not_in_the_way(self):
+        self.simulate(*QUICK, "-o", self.folder / "alone")
+        for delay_s in (0.05, 0.2, 0.6):
+            run = self.start()
+            time.sleep(delay_s)
+            run.kill()
+            run.communicate()
+            self.assertFalse((self.folder / "capture").exists())
+        self.assertTrue((self.folder / "capture.partial").exists(), "else this tests nothing")
+        self.simulate(*QUICK, "-o", self.folder / "capture")
+        self.assertEqual(contents(self.folder / "capture"), contents(self.folder / "alone"))
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["alone", "capture"])
+
+    def test_two_at_once(self):
+        runs = [self.start() for _ in range(3)]
+        messages = [run.communicate()[1] for run in runs]
+        self.assertEqual(sorted(run.returncode for run in runs), [DONE, USAGE, USAGE], messages)
+        for run, message in zip(runs, messages):
+            if run.returncode == USAGE:
+                self.assertRegex(message, "another program is writing into it|it is already there")
+        self.simulate(*QUICK, "-o", self.folder / "alone")
+        self.assertEqual(contents(self.folder / "capture"), contents(self.folder / "alone"))
+
+    def test_a_folder_of_somebody_else_is_not_taken_for_a_rest(self):
+        other = self.folder / "capture.partial"
+        other.mkdir()
+        (other / "mine").write_text("mine")
+        message = self.simulate(*QUICK, "-o", self.folder / "capture", code=USAGE).stderr
+        self.assertIn("capture.partial is there, and is not what a run that was stopped has left", message)
+        self.assertEqual(contents(other), {"mine": b"mine"})
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@
 
 #include "cmap/core/camera_model.hpp"
 #include "cmap/core/warning.hpp"
+#include "cmap/io/faults.hpp"
 #include "cmap/io/trajectory_file.hpp"
 
 namespace cmap {
@@ -34,8 +35,9 @@ struct CaptureCalibration {
   CameraModel camera;
   Eigen::Isometry3d T_imu_lidar = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d T_lidar_camera = Eigen::Isometry3d::Identity();
-  double image_time_offset_s = 0.0;  ///< recorded time + offset = time in the clock of the LiDAR
-  double imu_time_offset_s = 0.0;
+  /// Of images and of sessions' frames: recorded time + offset = time in the clock of the LiDAR.
+  double image_time_offset_s = 0.0;
+  double imu_time_offset_s = 0.0;  ///< likewise
 };
 
 /// A capture (FORMATS, "A capture"), opened: calibration, tables, IMU and poses are read and checked; images, scans
@@ -50,15 +52,31 @@ struct Capture {
   std::vector<Warning> warnings;                ///< what was decided on the user's behalf
 };
 
+/// Whether a part of a capture is read.
+enum class Want {
+  kNo,        ///< not looked at
+  kIfUsable,  ///< left out where it is missing, and with a warning where it is faulty
+  kYes,
+};
+
+/// The parts of a capture that not everybody needs. To have no IMU, poses or sessions is no fault either way.
+struct CaptureParts {
+  Want images = Want::kYes, scans = Want::kYes, imu = Want::kYes, sessions = Want::kYes;
+};
+
 /// Opens a capture. Rotations that deviate from one (largest entry of R^T R - I) are projected to SO(3), with a warning
 /// above 1e-3. Throws InputError naming file, place and reason: a file that is missing (images and scans of the tables
 /// too), an unknown or missing key, a matrix that is no rotation and translation (det R <= 0, or beyond 0.2), times
-/// that do not increase. Thread-safe.
-Capture open_capture(const std::filesystem::path& folder);
+/// that do not increase, one frames.csv beside several NPZ files. With a list of faults it goes on after each of these,
+/// with what could be read. Thread-safe.
+Capture open_capture(const std::filesystem::path& folder, const CaptureParts& parts = {}, const Faults& faults = {});
+
+/// The predictions of a session (read_session_predictions()), its frames' times in the clock of the LiDAR.
+SessionPredictions read_session(const Capture& capture, std::size_t session, const Faults& faults = {});
 
 /// Writes a capture, which appears under its name only when commit() says it is complete: until then everything goes to
-/// `<folder>.partial`, which open_capture does not take for a capture. Neither may exist before. Images and scans come
-/// by increasing time, each as soon as there is one; the rest once, in any order. Times are those of Capture: where the
+/// `<folder>.partial`, which open_capture does not take for a capture (see OutputFolder). Images and scans come by
+/// increasing time, each as soon as there is one; the rest once, in any order. Times are those of Capture: where the
 /// calibration has an offset, what is recorded is the time without it. Not thread-safe. Every failure to write is a
 /// UsageError that names path and reason; wrong use (times that do not increase) std::invalid_argument.
 class CaptureWriter {

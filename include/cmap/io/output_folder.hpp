@@ -1,15 +1,36 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace cmap {
 
 /// Makes a folder, and those above it, unless it is there. Throws UsageError naming it and the reason.
 void make_folder(const std::filesystem::path& folder);
 
+/// Keeps other programs of ours out of a folder that is there, for as long as it lives; the system lets go of it when
+/// a program is killed. Throws UsageError where another one has it. Where the file system knows no locks it holds
+/// nothing, and says so.
+class FolderLock {
+ public:
+  FolderLock() = default;
+  explicit FolderLock(const std::filesystem::path& folder);
+  ~FolderLock();
+  FolderLock(FolderLock&& other) noexcept;
+  FolderLock& operator=(FolderLock&& other) noexcept;
+
+  bool is_held() const { return descriptor_ >= 0; }
+  /// Whether the folder that is locked still has this name.
+  bool is_of(const std::filesystem::path& folder) const;
+
+ private:
+  int descriptor_ = -1;
+};
+
 /// A folder that appears under its name only when it is complete: filled as `<name>.partial` beside it, renamed by
-/// commit(), removed otherwise. Neither may exist before: the one could be somebody's data, the other somebody else's
-/// work. Whoever is killed leaves `<name>.partial`. Every failure throws UsageError naming the path and the reason.
+/// commit(), removed otherwise. The name must be free. Whoever is killed leaves `<name>.partial`, which the next run
+/// replaces; one that another program is filling, and one that holds anything but such a rest, is refused. Every
+/// failure throws UsageError naming the path and the reason.
 class OutputFolder {
  public:
   explicit OutputFolder(std::filesystem::path path);
@@ -26,6 +47,7 @@ class OutputFolder {
  private:
   std::filesystem::path path_;
   std::filesystem::path partial_;  ///< empty once renamed
+  FolderLock lock_;
 };
 
 }  // namespace cmap

@@ -10,6 +10,7 @@
 #include "cmap/core/array.hpp"
 #include "cmap/core/point_cloud.hpp"
 #include "cmap/core/warning.hpp"
+#include "cmap/io/faults.hpp"
 
 namespace cmap {
 
@@ -30,6 +31,7 @@ struct SessionPredictions {
   Array<float> depth;                               ///< along the optical axis, > 0; 0 where there is none
   Array<float> depth_confidence;                    ///< VGGT's are >= 1; 0 where there is no depth
   std::vector<Eigen::Isometry3d> T_camera_session;  ///< OpenCV: x right, y down, z forward; that of frame 0 is identity
+  Eigen::Isometry3d T_session_file = Eigen::Isometry3d::Identity();  ///< from the frame that the file's poses are in
   std::vector<Eigen::Matrix3d> intrinsics;          ///< upper triangular, last row 0 0 1; pixel centers at integers
   Array<Eigen::Vector3f> world_points;              ///< session frame; empty: none
   Array<float> world_points_confidence;             ///< 0 where there is no point; empty: no points
@@ -40,19 +42,24 @@ struct SessionPredictions {
 };
 
 /// Reads a session in either form of FORMATS: a folder with meta.json, frames.csv and the arrays, or VGGT's own
-/// predictions.npz with `<name>.frames.csv` or frames.csv beside it (a folder may hold these two as well).
+/// NAME.npz with NAME.frames.csv beside it, or frames.csv where no other NPZ file is (a folder may hold these two as
+/// well).
 ///
 /// Rotations are projected to SO(3), and everything is moved so that frame 0's camera is the session frame (a warning
 /// where it was not nearly so). Pixels whose depth or confidence is zero or not finite get depth and confidence 0, with
-/// a warning that counts them; so do points. Confidences below 1 and skipped members are warnings.
+/// a warning that counts them; so do points. Picture values a little outside [0,1] are clamped, with a warning that
+/// counts them. Confidences below 1 and skipped members are warnings.
 /// Throws InputError naming file, member and reason: anything missing or malformed, shapes or numbers of frames that
-/// differ, a rotation beyond 1e-3, a negative depth, a session without a single valid pixel, times not increasing, a
-/// convention other than FORMATS'. Thread-safe.
-SessionPredictions read_session_predictions(const std::filesystem::path& folder_or_npz);
+/// differ, a rotation beyond 1e-3, intrinsics of a picture of another size, a negative depth, a session without a
+/// single valid pixel, times not increasing, a convention other than FORMATS'. With a list of faults it goes on after
+/// each of these; what it returns is then whole only where none was added. Thread-safe.
+SessionPredictions read_session_predictions(const std::filesystem::path& folder_or_npz, const Faults& faults = {});
 
-/// Writes the folder form, whole or not at all; the folder must not exist. Depth as float32, poses as float64. Throws
-/// UsageError if it cannot be written or a name cannot stand in frames.csv, std::invalid_argument if sizes differ.
-void write_session_predictions(const SessionPredictions& session, const std::filesystem::path& folder);
+/// Writes the folder form, whole or not at all; the folder must not exist. Depth as float32, poses as float64; times
+/// are recorded without `time_offset_s`. Throws UsageError if it cannot be written or a name cannot stand in
+/// frames.csv, std::invalid_argument if sizes differ.
+void write_session_predictions(const SessionPredictions& session, const std::filesystem::path& folder,
+                               double time_offset_s = 0.0);
 
 /// A keyframe of VGGT-SLAM: a point per pixel in a frame and unit common to all keyframes.
 struct PointMap {

@@ -36,8 +36,8 @@ struct SessionOutcome {
   bool rotation_corrected = false;
   bool scale_inlier = true;
   double prefusion_rmse_m = 0.0;   ///< of its camera centers
-  double overlap = 0.0;            ///< with the LiDAR
-  double rmse_m = 0.0;             ///< of these matches
+  double overlap = 0.0;            ///< with the LiDAR; NaN: not measured, as there are no scans
+  double rmse_m = 0.0;             ///< of these matches; likewise
   std::vector<std::string> flags;  ///< doubts, for people
   std::string dropped;             ///< why it is not in the map; empty: it is
 };
@@ -74,12 +74,16 @@ struct ReconstructionRun {
   std::function<void(const std::string& session, const PointCloud& map)> session_map;
 };
 
+/// What a run up to a stage reads of a capture: no pictures, as predictions hold their pixels; scans only where they
+/// are registered on. With pre-fusion alone they measure how well it fits, and may be missing.
+CaptureParts parts_needed(const ReconstructionOptions& options, Stage last);
+
 /// Sessions of VGGT predictions, LiDAR scans and LiDAR-inertial poses become one metric colored map: pre-fusion,
 /// registration, pose graph, fusion (PIPELINE). One session is in memory at a time, two for their links; the fused map
 /// bounds the rest. The same bytes for any number of threads.
 /// A session that cannot be read or placed is dropped, with the reason in its outcome and a warning. Throws InputError
-/// where the capture has no sessions or no LiDAR-inertial poses, UnsupportedError where fewer than half of the sessions
-/// are left.
+/// where the capture has no sessions, no LiDAR-inertial poses or no scans that are needed, UnsupportedError where fewer
+/// than half of the sessions are left.
 Reconstruction reconstruct(const Capture& capture, const ReconstructionOptions& options,
                            const ReconstructionRun& run = {});
 

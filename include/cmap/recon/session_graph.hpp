@@ -23,6 +23,8 @@ struct PlacedSession {
   double rmse_m = 0.0;                            ///< of its registration
 };
 
+std::vector<double> times_of(const SessionPredictions& session);
+
 /// A session's frames without their pictures.
 std::vector<SessionFrame> frames_of(const SessionPredictions& session);
 

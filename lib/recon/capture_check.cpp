@@ -1,0 +1,88 @@
+#include "cmap/recon/capture_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cmap/align/trajectory.hpp"
+#include "cmap/core/error.hpp"
+#include "cmap/io/lidar_scan.hpp"
+#include "recon/session_check.hpp"
+
+namespace cmap {
+namespace fs = std::filesystem;
+namespace {
+
+/// What is there, and what is needed whether it is there or not.
+CaptureParts parts_to_check(const fs::path& folder, const ReconstructionOptions& options, Stage last) {
+  const CaptureParts needed = parts_needed(options, last);
+  const auto want = [&](const char* table, Want need) {
+    return need == Want::kYes || fs::exists(folder / table) ? Want::kYes : Want::kNo;
+  };
+  return {.images = want("images.csv", needed.images), .scans = want("lidar.csv", needed.scans), .imu = Want::kYes};
+}
+
+void check_needed(const Capture& capture, CaptureCheck& check) {
+  const std::string lio = (capture.folder / "lio.tum").string();
+  const std::string predictions = (capture.folder / "predictions").string();
+  if (!fs::exists(lio)) check.faults.push_back(lio + ": no such file; LiDAR-inertial poses (world_T_imu) are needed");
+  if (!capture.sessions.empty()) return;
+  check.faults.push_back(predictions + ": no sessions of predictions: folders, or NAME.npz with NAME.frames.csv");
+}
+
+/// The scans that have a pose at their time.
+void check_scan_times(const Capture& capture, double max_gap_s, CaptureCheck& check) {
+  const std::vector<StampedFile>& scans = capture.scans;
+  const Trajectory& poses = capture.lio;
+  if (scans.empty() || poses.empty()) return;
+  const auto n_missing = std::ranges::count_if(
+      scans, [&](const StampedFile& scan) { return !pose_at(poses, scan.time_s, max_gap_s).has_value(); });
+  if (n_missing == 0) return;
+  const bool is_any = n_missing < std::ssize(scans);
+  (is_any ? check.warnings : check.faults)
+      .push_back(
+          fmt::format("{}: {} of {} scans have no LiDAR-inertial pose at their time: scans from {:.3f} to {:.3f} s, "
+                      "poses from {:.3f} to {:.3f} s, gaps of at most {:g} s (max_gap_s)",
+                      (capture.folder / "lidar.csv").string(), n_missing, scans.size(), scans.front().time_s,
+                      scans.back().time_s, poses.front().time_s, poses.back().time_s, max_gap_s));
+}
+
+void check_scans(const Capture& capture, const ProgressSink& progress, CaptureCheck& check) {
+  const Faults faults(check.faults);
+  std::size_t n_read = 0, n_points = 0, i = 0;
+  for (const StampedFile& file : capture.scans) {
+    if (progress) progress("scans", static_cast<double>(i++) / static_cast<double>(capture.scans.size()));
+    faults.attempt([&] {
+      n_points += read_lidar_scan(file.path, file.time_s).positions.size();
+      ++n_read;
+    });
+  }
+  if (n_read == 0 || n_points > 0) return;
+  check.faults.push_back(
+      fmt::format("{}: none of the {} scans has a point", (capture.folder / "lidar.csv").string(), n_read));
+}
+
+}  // namespace
+
+CaptureCheck check_capture(const fs::path& folder, const ReconstructionOptions& options, Stage last,
+                           const ProgressSink& progress) {
+  CaptureCheck check;
+  const Faults faults(check.faults);
+  Capture capture;
+  faults.attempt([&] { capture = open_capture(folder, parts_to_check(folder, options, last), faults); });
+  if (capture.folder.empty()) return check;
+  for (const Warning& warning : capture.warnings) check.warnings.push_back(warning.message);
+  check_needed(capture, check);
+  SessionCheck sessions(capture, options, check);
+  for (std::size_t i = 0; i < capture.sessions.size(); ++i) {
+    if (progress) progress("sessions", static_cast<double>(i) / static_cast<double>(capture.sessions.size()));
+    sessions.add(i);
+  }
+  check_scan_times(capture, options.prefusion.max_gap_s, check);
+  check_scans(capture, progress, check);
+  check.summary = fmt::format("{} sessions of {} frames, {} poses, {} scans, {} pictures", capture.sessions.size(),
+                              sessions.frames(), capture.lio.size(), capture.scans.size(), capture.images.size());
+  return check;
+}
+
+}  // namespace cmap
