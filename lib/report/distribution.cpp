@@ -12,15 +12,6 @@ namespace {
 
 constexpr std::size_t kBins = 500;
 
-Array<double> errors_of(const NearestPairs& pairs, PairError error) {
-  Array<double> errors(pairs.size());
-  parallel_chunks(pairs.size(), kLoopChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t slot = begin; slot < end; ++slot) errors[slot] = (pairs.*error)(slot);
-  });
-  std::erase_if(errors, [](double v) { return std::isnan(v); });  // pairs without both colors
-  return errors;
-}
-
 struct Counts {
   std::array<std::uint64_t, kBins + 1> n{};  ///< the last one: beyond
   Counts& operator+=(const Counts& other) {
@@ -43,6 +34,15 @@ DirectedDistribution binned(const Array<double>& errors, double bin_width, doubl
 
 }  // namespace
 
+Array<double> errors_of(const NearestPairs& pairs, PairError error) {
+  Array<double> errors(pairs.size());
+  parallel_chunks(pairs.size(), kLoopChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t slot = begin; slot < end; ++slot) errors[slot] = (pairs.*error)(slot);
+  });
+  std::erase_if(errors, [](double v) { return std::isnan(v); });  // pairs without both colors
+  return errors;
+}
+
 Distribution distribution_of(const MapPair& pair, PairError error) {
   constexpr std::array kShares{0.95, 0.99};
   const Array<double> estimate = errors_of(pair.estimate_to_reference(), error);
@@ -51,6 +51,14 @@ Distribution distribution_of(const MapPair& pair, PairError error) {
   const std::vector<double> of_reference = quantiles(reference, kShares);
   const double bin_width = round_number_above(std::max(of_estimate[1], of_reference[1])) / static_cast<double>(kBins);
   return {bin_width, binned(estimate, bin_width, of_estimate[0]), binned(reference, bin_width, of_reference[0])};
+}
+
+RankedValues ranked(Array<double> values) {
+  std::ranges::sort(values);
+  RankedValues table{values.size(), {}};
+  const std::size_t n = std::min(values.size(), kMostRanked);
+  for (std::size_t i = 0; i < n; ++i) table.values.push_back(values[n == 1 ? 0 : i * (values.size() - 1) / (n - 1)]);
+  return table;
 }
 
 }  // namespace cmap

@@ -2,8 +2,8 @@
 import { colorMapNames, colorTable, noValueColor } from './color_maps';
 import type { ClassLayer, Layer, ScalarLayer } from './contract';
 import { button, element, rgb } from './dom';
-import { exact, percent, short, unitText } from './format';
-import { classShares, isClasses, isScalar, type ScalarStyle, sharesOutside } from './layers';
+import { count, exact, percent, short, unitText } from './format';
+import { isClasses, isScalar, type ScalarStyle, sharesOutside } from './layers';
 import { type PointMap, pointColor } from './point_map';
 
 const stops = 32;
@@ -23,15 +23,20 @@ export function swatch(color: ArrayLike<number>): HTMLElement {
   return made;
 }
 
-function classList(map: PointMap, layer: ClassLayer): HTMLElement {
-  const shares = classShares(map, layer);
-  const rows = layer.classes.map(({ label, color }, i) =>
+const pointsText = (points: number) => `${count(points)} ${points === 1 ? 'point' : 'points'}`;
+
+function classList(layer: ClassLayer): HTMLElement {
+  const rows = layer.classes.map(({ label, color, points, share }) =>
     element(
       'li',
       { 'data-class': label },
       swatch(color),
       element('span', {}, label),
-      element('span', { class: 'number', 'data-value': exact(shares[i]) }, percent(shares[i])),
+      element(
+        'span',
+        { class: 'number', 'data-value': exact(share ?? points), title: pointsText(points) },
+        share === null ? pointsText(points) : percent(share),
+      ),
     ),
   );
   return element('ul', { class: 'classes' }, ...rows);
@@ -77,13 +82,13 @@ function rangeFields(layer: ScalarLayer, style: ScalarStyle, changed: () => void
   );
 }
 
-function outsideText(map: PointMap, layer: ScalarLayer, range: [number, number]): string {
-  const [below, above] = sharesOutside(map, layer.field, range);
+function outsideText(layer: ScalarLayer, range: [number, number]): string {
+  const [below, above] = sharesOutside(layer, range);
   const parts = [below > 0 ? `${percent(below)} below` : '', above > 0 ? `${percent(above)} above` : ''];
   return parts.filter(Boolean).join(', ') || 'All points within the range';
 }
 
-function colorBar(map: PointMap, layer: ScalarLayer, style: ScalarStyle): HTMLElement {
+function colorBar(layer: ScalarLayer, style: ScalarStyle): HTMLElement {
   const bar = element('div', { class: 'bar' });
   bar.style.background = gradient(style.colorMap);
   const [low, high] = style.range;
@@ -95,7 +100,7 @@ function colorBar(map: PointMap, layer: ScalarLayer, style: ScalarStyle): HTMLEl
     { class: 'scale' },
     bar,
     element('div', { class: 'ends' }, ...ends),
-    element('p', { class: 'note' }, [unitText(layer.unit), outsideText(map, layer, style.range)].filter(Boolean).join(' · ')),
+    element('p', { class: 'note' }, [unitText(layer.unit), outsideText(layer, style.range)].filter(Boolean).join(' · ')),
   );
 }
 
@@ -106,7 +111,7 @@ function colorNote(map: PointMap): HTMLElement {
 
 /** The legend of a layer. `changed` is called when its style has been changed, and then a new legend is due. */
 export function legend(map: PointMap, layer: Layer, style: ScalarStyle | undefined, changed: () => void): Node[] {
-  if (isClasses(layer)) return [classList(map, layer)];
-  if (isScalar(layer) && style) return [colorBar(map, layer, style), rangeFields(layer, style, changed)];
+  if (isClasses(layer)) return [classList(layer)];
+  if (isScalar(layer) && style) return [colorBar(layer, style), rangeFields(layer, style, changed)];
   return [colorNote(map)];
 }
