@@ -135,8 +135,8 @@ void add_colors(PlaneWriter& writer, const IndexedMap& map) {
   }
 }
 
-/// The page's planes hold numbers only: an error that is not there, for want of a color, is packed as 0. Strays have a
-/// largest error of their own, which would coarsen the others.
+/// An error that is not there (NaN) has the last code. Strays have a largest error of their own, which would coarsen
+/// the others.
 template <class ErrorAt>
 void add_error(PackedMap& packed, const char* field, const char* unit, const PointBlocks& points, const PageSlots& page,
                ErrorAt&& error_at) {
@@ -145,10 +145,12 @@ void add_error(PackedMap& packed, const char* field, const char* unit, const Poi
     return most[page.body.is_stray(points.world(slot)) ? 1 : 0];
   };
   for (std::uint32_t slot : page.slots) most_of(slot) = std::max(most_of(slot), error_at(slot));
-  constexpr double kSteps = 65535.0;
+  constexpr std::uint32_t kNone = 65535;
+  constexpr double kSteps = 65534.0;
   PlaneWriter(packed, page.slots).add(field, 2, {{"max", most}, {"unit", unit}}, [&](std::uint32_t slot) {
-    const double largest = most_of(slot);
-    return largest > 0.0 ? static_cast<std::uint32_t>(std::lround(kSteps * std::sqrt(error_at(slot) / largest))) : 0u;
+    const double error = error_at(slot), largest = most_of(slot);
+    if (std::isnan(error)) return kNone;
+    return largest > 0.0 ? static_cast<std::uint32_t>(std::lround(kSteps * std::sqrt(error / largest))) : 0u;
   });
 }
 
@@ -178,7 +180,7 @@ PackedMap pack_map(const NearestPairs& pairs, const LocalColorRecall* recall, co
   add_error(packed, "distance", "m", points, page, [&](std::uint32_t slot) { return pairs.distance_m(slot); });
   if (pairs.from.has_color() && pairs.to.has_color()) {
     add_error(packed, "color_distance", "unit RGB", points, page,
-              [&](std::uint32_t slot) { return pairs.has_colors(slot) ? pairs.color_distance(slot) : 0.0; });
+              [&](std::uint32_t slot) { return pairs.color_distance(slot); });
   }
   if (recall != nullptr) {
     PlaneWriter(packed, page.slots).add("lcr", 1, Json::object(), [&](std::uint32_t slot) {

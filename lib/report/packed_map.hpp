@@ -13,7 +13,7 @@ namespace cmap {
 /// zig-zag, and split into one run for each of its bytes, low ones first: neighbors are alike, so that gzip finds
 /// little left. Positions are counted in the steps of `grids`, that of the map and, after it, that of its strays
 /// (points farther from its core than ten of its diagonals): strays come last. Errors are stored as the square root of
-/// their share of the largest of the map, or of its strays.
+/// their share of the largest of the map, or of its strays; 65535 is none.
 struct PackedMap {
   nlohmann::ordered_json description;
   std::string bytes;

@@ -53,11 +53,8 @@ Json distance_layer(const MapPair& pair, const Distribution& errors) {
 }
 
 Json color_distance_layer(const MapPair& pair, const Distribution& errors) {
-  const bool every_color = pair.reference.n_without_color + pair.estimate.n_without_color == 0;
-  return scalar_layer("color-distance", "estimate",
-                      every_color ? "Color distance" : "Color distance (0 where a color is missing)", "color_distance",
-                      "inferno", error_range(errors), "unit RGB",
-                      ranked(errors_of(pair.estimate_to_reference(), &NearestPairs::color_distance)));
+  return scalar_layer("color-distance", "estimate", "Color distance", "color_distance", "inferno", error_range(errors),
+                      "unit RGB", ranked(errors_of(pair.estimate_to_reference(), &NearestPairs::color_distance)));
 }
 
 /// Shares are the metric's: of the points that have a color.

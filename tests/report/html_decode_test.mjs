@@ -74,15 +74,16 @@ test('coordinates and fields of a point, and of a stray', () => {
   ];
   const text = { grids, planes: [{ field: 'distance', max: [8, 1e6] }] };
   const words = (...list) => Uint16Array.from(list);
-  const values = new Map([['x', words(250, 1)], ['y', words(1000, 2)], ['z', words(3, 0)], ['distance', words(65535, 65535)]]);
+  const values = new Map([['x', words(250, 1)], ['y', words(1000, 2)], ['z', words(3, 0)], ['distance', words(65534, 65534)]]);
   const map = pointMap(text, values);
   assert.deepEqual(worldPoint(map, 0), [500000.25, 4000002, -0.5]);
   assert.deepEqual(worldPoint(map, 1), [-999992, 16, 0]);
   assert.equal(fieldValue(map, 'z')(0), -0.5, 'z is the height in meters');
   assert.equal(fieldValue(map, 'distance')(0), 8, 'the largest code is the largest value');
   assert.equal(fieldValue(map, 'distance')(1), 1e6, 'of strays the largest of theirs');
-  values.set('distance', words(13107, 0)); // a fifth: 1/25 of the largest value
-  assert.ok(Math.abs(fieldValue(map, 'distance')(0) - 0.32) < 1e-12);
+  values.set('distance', words(32767, 65535)); // a half: 1/4 of the largest value
+  assert.equal(fieldValue(map, 'distance')(0), 2);
+  assert.ok(Number.isNaN(fieldValue(map, 'distance')(1)), 'the last code is none');
   assert.equal(fieldValue(map, 'lcr'), undefined, 'no such plane');
   assert.equal(coordinateDecimals(map), 3);
   assert.throws(() => pointMap({ ...text, id: 'm' }, new Map()), /map m has no plane x/);

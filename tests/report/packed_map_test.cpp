@@ -51,8 +51,8 @@ TEST(PackMap, HandComputed) {
   const std::string r{"\x14\x03", 2};  // 10, then -2
   const std::string g(2, '\0');
   const std::string b{"\x01\x02", 2};  // 255 is -1; from there to 0 it is 1, modulo 256
-  // The farther one is 65535, or -1: zig-zag 1; the other one round(65535 sqrt(1 / 1.04403)) = 64138, so -1397: 2793.
-  const std::string distance{"\x01\xe9\x00\x0a", 4};
+  // The farther one is 65534, or -2: zig-zag 3; the other one round(65534 sqrt(1 / 1.04403)) = 64137, so -1397: 2793.
+  const std::string distance{"\x03\xe9\x00\x0a", 4};
   EXPECT_EQ(packed.bytes.substr(0, 6), x);
   EXPECT_EQ(packed.bytes.substr(6, 12), y + z);
   EXPECT_EQ(packed.bytes.substr(18, 6), r + g + b);
@@ -66,6 +66,15 @@ TEST(PackMap, WithoutColorThereAreOnlyPositionsAndDistances) {
   const PackedMap packed = pack_map(pair.reference_to_estimate(), nullptr, all_slots(pair));
   EXPECT_EQ(packed.description.at("planes").size(), 4u);
   EXPECT_EQ(packed.bytes.size(), 3u * 3u + 2u);
+}
+
+TEST(PackMap, AnErrorThatIsNotThereHasTheLastCode) {
+  test::Clouds clouds{test::cloud_of({{0, 0, 0}}), test::cloud_of({{0, 0, 0}}, {{1, 2, 3}})};
+  clouds.reference.colors = Array<RgbF>{{NAN, NAN, NAN}};
+  const MapPair pair = clouds.pair();
+  const PackedMap packed = pack_map(pair.reference_to_estimate(), nullptr, all_slots(pair));
+  EXPECT_EQ(packed.description.at("planes").back().at("field"), "color_distance");
+  EXPECT_EQ(packed.bytes.substr(packed.bytes.size() - 2), std::string("\x01\x00", 2)) << "65535 is -1: zig-zag 1";
 }
 
 TEST(PackMap, OneMapHasPositionsAndColors) {

@@ -39,7 +39,7 @@ def unpacked(page):
             zigzag = sum(planes[k] << 8 * k for k in range(size))
             values = np.cumsum((zigzag >> 1) ^ -(zigzag & 1)) % (1 << 8 * size)
             most = np.array(plane.get("max", [0, 0]))[grid]
-            fields[plane["field"]] = most * (values / 65535) ** 2 if "max" in plane else values
+            fields[plane["field"]] = most * (values / 65534) ** 2 if "max" in plane else values
         steps = np.stack([fields[axis] for axis in "xyz"], axis=1)
         origins, sizes = (np.array([g[key] for g in entry["grids"]]) for key in ("origin_m", "step_m"))
         fields["xyz"], fields["step"] = origins[grid] + steps * sizes[grid], sizes[grid]
@@ -126,10 +126,10 @@ class Html(CmapEval):
             for channel, letter in enumerate("rgb"):
                 np.testing.assert_array_equal(found[letter][lone], colors[nearest[lone], channel])
             distance, neighbor = cKDTree(clouds[other][0]).query(points[nearest])
-            step = np.sqrt(distance.max() * distance) / 65535 + distance.max() / 65535**2  # half a step of the root
+            step = np.sqrt(distance.max() * distance) / 65534 + distance.max() / 65534**2  # half a step of the root
             self.assertLess((np.abs(found["distance"] - distance) - step)[lone].max(), 1e-6)
             color_distance = np.linalg.norm(colors[nearest] - clouds[other][1][neighbor], axis=1) / 255
-            self.assertLess(np.abs(found["color_distance"] - color_distance)[lone].max(), np.sqrt(3) / 65535)
+            self.assertLess(np.abs(found["color_distance"] - color_distance)[lone].max(), np.sqrt(3) / 65534)
 
     def test_positions_of_any_size(self):
         """2 cm, 400 m and UTM, each with a stray that coarsens nothing but itself: every point within half a step,

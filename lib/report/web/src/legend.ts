@@ -88,10 +88,11 @@ function outsideText(layer: ScalarLayer, range: [number, number]): string {
   return parts.filter(Boolean).join(', ') || 'All points within the range';
 }
 
-function colorBar(layer: ScalarLayer, style: ScalarStyle): HTMLElement {
+function colorBar(map: PointMap, layer: ScalarLayer, style: ScalarStyle): HTMLElement {
   const bar = element('div', { class: 'bar' });
   bar.style.background = gradient(style.colorMap);
   const [low, high] = style.range;
+  const without = map.text.points_of_map - layer.ranked.points;
   const ends = [low, (low + high) / 2, high].map((value) =>
     element('span', { 'data-value': exact(value) }, short(value)),
   );
@@ -101,6 +102,7 @@ function colorBar(layer: ScalarLayer, style: ScalarStyle): HTMLElement {
     bar,
     element('div', { class: 'ends' }, ...ends),
     element('p', { class: 'note' }, [unitText(layer.unit), outsideText(layer, style.range)].filter(Boolean).join(' · ')),
+    without > 0 ? element('p', { class: 'note' }, swatch(noValueColor), `${pointsText(without)} without a value`) : undefined,
   );
 }
 
@@ -112,6 +114,6 @@ function colorNote(map: PointMap): HTMLElement {
 /** The legend of a layer. `changed` is called when its style has been changed, and then a new legend is due. */
 export function legend(map: PointMap, layer: Layer, style: ScalarStyle | undefined, changed: () => void): Node[] {
   if (isClasses(layer)) return [classList(layer)];
-  if (isScalar(layer) && style) return [colorBar(layer, style), rangeFields(layer, style, changed)];
+  if (isScalar(layer) && style) return [colorBar(map, layer, style), rangeFields(layer, style, changed)];
   return [colorNote(map)];
 }

@@ -10,6 +10,7 @@ export interface PointMap {
 }
 
 const axes = ['x', 'y', 'z'] as const;
+const none = 65535;
 
 /** Calls visit for each point with the number of its grid. */
 function eachPoint({ grids }: MapText, visit: (index: number, grid: number) => void): void {
@@ -43,7 +44,10 @@ export function coordinateDecimals({ text }: PointMap): number {
   return Math.min(9, Math.max(0, Math.ceil(-Math.log10(step))));
 }
 
-/** Value of a scalar field at each point; z is the world's z in meters, other fields are coded by their square root. */
+/**
+ * Value of a scalar field at each point, NaN where it has none; z is the world's z in meters, other fields are coded by
+ * their square root.
+ */
 export function fieldValue(map: PointMap, field: string): ((index: number) => number) | undefined {
   const values = map.values.get(field);
   if (!values) return undefined;
@@ -51,7 +55,7 @@ export function fieldValue(map: PointMap, field: string): ((index: number) => nu
   if (axis >= 0) return (index) => map.world[axis][index];
   const max = map.text.planes.find((plane) => plane.field === field)?.max ?? [NaN];
   const near = map.text.grids[0].points;
-  return (index) => max[index < near ? 0 : 1] * (values[index] / 65535) ** 2;
+  return (index) => (values[index] === none ? NaN : max[index < near ? 0 : 1] * (values[index] / (none - 1)) ** 2);
 }
 
 export function pointColor({ values }: PointMap, index: number): number[] | undefined {
