@@ -6,14 +6,9 @@ import { count, exact, percent, short, unitText } from './format';
 import { isClasses, isScalar, type ScalarStyle, sharesOutside } from './layers';
 import { type PointMap, pointColor } from './point_map';
 
-const stops = 32;
-
 export function gradient(colorMap: string): string {
   const table = colorTable(colorMap);
-  const colors = Array.from({ length: stops + 1 }, (_, i) => {
-    const index = Math.round((255 * i) / stops);
-    return rgb(table.subarray(3 * index));
-  });
+  const colors = Array.from({ length: 256 }, (_, i) => rgb(table.subarray(3 * i)));
   return `linear-gradient(to right, ${colors.join(', ')})`;
 }
 

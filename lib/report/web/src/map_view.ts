@@ -218,8 +218,8 @@ function turnAbout(view: View, x: number, y: number): void {
 
 function followPointSize(view: View): void {
   const { size } = view.parts;
-  // A point alone has no spacing: it is a dot in a first view of about a meter.
-  const base = 1.3 * Math.max(...view.scene.clouds.map((cloud) => spacing(cloud.map))) || 0.02;
+  // Discs that close the gaps of a grid. A point alone has no spacing: it is a dot in a first view of about a meter.
+  const base = 1.5 * Math.max(...view.scene.clouds.map((cloud) => spacing(cloud.map))) || 0.02;
   const apply = () => {
     view.scene.diameter = base * 2 ** size.valueAsNumber;
     view.scene.request();
