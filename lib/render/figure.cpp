@@ -81,7 +81,7 @@ PixelMap look_at(const PointBlocks& points, const Projection& projection, const 
 /// Null for colors that a legend explains: they stay as they are there.
 const Array<float>* shading_for(const Layer& layer, const Projection& projection, Sight& sight) {
   constexpr double kStrength = 0.6;
-  if (layer.has_legend()) return nullptr;
+  if (layer.is_heat_map()) return nullptr;
   if (sight.shading.empty()) sight.shading = eye_dome_shading(sight.pixels, projection, kStrength);
   return &sight.shading;
 }

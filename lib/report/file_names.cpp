@@ -62,7 +62,7 @@ std::string with_file_names(std::string_view text) {
   return shortened;
 }
 
-Json with_file_names(const Json& report) {
+Json shared_report(const Json& report) {
   std::vector<std::string> folders;
   for (const Json& input : report.at("inputs")) {
     const std::string folder = std::filesystem::path(input.at("path").get<std::string>()).parent_path().string();

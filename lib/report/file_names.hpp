@@ -13,7 +13,7 @@ std::string file_name(std::string_view path);
 /// whoever made them are nobody's business. Relative paths stay.
 std::string with_file_names(std::string_view text);
 
-/// The same for all texts of a report; the folders of its inputs are known, and so may hold blanks.
-nlohmann::ordered_json with_file_names(const nlohmann::ordered_json& report);
+/// A report as its page holds it: so in all of its texts. The folders of its inputs are known, and so may hold blanks.
+nlohmann::ordered_json shared_report(const nlohmann::ordered_json& report);
 
 }  // namespace cmap

@@ -159,7 +159,7 @@ void write_page(const Json& report, const PageData& data, OutputFile& file) {
     file.write("</script>\n");
   };
   file.write(page.substr(0, place));
-  script("application/json", "cmap-report", inlined(with_file_names(report)));
+  script("application/json", "cmap-report", inlined(shared_report(report)));
   script("application/json", "cmap-page", inlined(data.page));
   script("text/plain", "cmap-points", base64(gzipped(data.points)));
   file.write(page.substr(place + kDataPlace.size()));

@@ -22,7 +22,7 @@ TEST(WithFileNames, EverythingElseStays) {
   }
 }
 
-TEST(WithFileNames, OfAReportAllTexts) {
+TEST(SharedReport, NamesFilesInAllItsTexts) {
   const nlohmann::ordered_json report{
       {"inputs", {{"reference", {{"path", "/home/ann lee/maps of may/a.ply"}, {"points", 3}}}}},
       {"warnings", {{{"message", "/home/ann lee/maps of may/a.offset.txt names a shift"}}}},
@@ -30,7 +30,7 @@ TEST(WithFileNames, OfAReportAllTexts) {
   const nlohmann::ordered_json shared{{"inputs", {{"reference", {{"path", "a.ply"}, {"points", 3}}}}},
                                       {"warnings", {{{"message", "a.offset.txt names a shift"}}}},
                                       {"run", {{"command", "cmap_eval 'a.ply'"}, {"threads", 2}}}};
-  EXPECT_EQ(with_file_names(report), shared);
+  EXPECT_EQ(shared_report(report), shared);
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ struct Layer {
   Array<Rgb8> colors;               ///< by slot of `points`
   std::optional<ColorScale> scale;  ///< of heat maps
   std::vector<ColorClass> classes;  ///< of class maps
-  bool has_legend() const { return scale.has_value() || !classes.empty(); }
+  bool is_heat_map() const { return scale.has_value() || !classes.empty(); }
 };
 
 /// What a user may fix about a layer.
