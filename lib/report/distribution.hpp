@@ -36,7 +36,8 @@ struct RankedValues {
 
 inline constexpr std::size_t kMostRanked = 10'001;
 
-RankedValues ranked(Array<double> values);
+/// To single precision.
+RankedValues ranked(const Array<double>& values);
 
 /// The errors of one direction that there are: no color, no distance of colors.
 Array<double> errors_of(const NearestPairs& pairs, PairError error);

@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 
+#include "cmap/core/parallel.hpp"
 #include "cmap/core/round_number.hpp"
 
 namespace cmap {
@@ -37,8 +38,10 @@ Json map_layer(const IndexedMap& map, const char* map_id, const char* title) {
 Json height_layer(const IndexedMap& map, const char* map_id, const char* title) {
   const PointBlocks& points = map.index.points;
   Array<double> heights(points.size);
-  for (std::size_t slot = 0; slot < points.size; ++slot) heights[slot] = points.world(slot).z();
-  const RankedValues all = ranked(std::move(heights));
+  parallel_chunks(points.size, kLoopChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t slot = begin; slot < end; ++slot) heights[slot] = points.world(slot).z();
+  });
+  const RankedValues all = ranked(heights);
   const auto at = [&](double share) {
     return all.values[static_cast<std::size_t>(share * static_cast<double>(all.values.size() - 1))];
   };

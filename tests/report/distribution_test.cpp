@@ -54,6 +54,7 @@ TEST(Ranked, AllValuesOfAFew) {
   EXPECT_EQ(few.n, 4u);
   EXPECT_EQ(few.values, (std::vector<double>{1.0, 1.0, 2.0, 3.0}));
   EXPECT_EQ(ranked({7.0}).values, std::vector<double>{7.0});
+  EXPECT_EQ(ranked({0.5, -2.0, -0.25, 0.0, -1e6}).values, (std::vector<double>{-1e6, -2.0, -0.25, 0.0, 0.5}));
   EXPECT_TRUE(ranked({}).values.empty());
 }
 
