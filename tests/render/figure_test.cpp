@@ -65,7 +65,8 @@ std::pair<std::size_t, std::size_t> true_and_false_pixels(const Image& image, Rg
       const Rgba8& p = image.at(x, y);
       const double cover = (255.0 - p[0]) / (255.0 - color[0]);
       bool is_mixed = cover < 1.01;
-      for (std::size_t c = 0; c < 3; ++c) is_mixed = is_mixed && std::abs(255.0 - cover * (255.0 - color[c]) - p[c]) < 3.0;
+      for (std::size_t c = 0; c < 3; ++c)
+        is_mixed = is_mixed && std::abs(255.0 - cover * (255.0 - color[c]) - p[c]) < 3.0;
       if (p[0] == color[0] && p[1] == color[1] && p[2] == color[2]) {
         ++n_true;
       } else if (!is_mixed) {

@@ -9,9 +9,9 @@ TEST(WithFileNames, AbsolutePathsLoseTheirFolders) {
   const auto expect = [](const char* text, const char* wanted) { EXPECT_EQ(with_file_names(text), wanted) << text; };
   expect("/home/ann/maps/a.ply", "a.ply");
   expect("cmap_eval /home/ann/a.ply ../b.ply -o /tmp/r.json", "cmap_eval a.ply ../b.ply -o r.json");
-  expect("cmap_eval '/home/ann lee/my map.ply' --transform=/home/ann/T.txt", "cmap_eval 'my map.ply' --transform=T.txt");
-  expect("read \"/home/ann/a b.csv\" (/home/ann/c.txt), /home/ann/d.txt: bad",
-         "read \"a b.csv\" (c.txt), d.txt: bad");
+  expect("cmap_eval '/home/ann lee/my map.ply' --transform=/home/ann/T.txt",
+         "cmap_eval 'my map.ply' --transform=T.txt");
+  expect("read \"/home/ann/a b.csv\" (/home/ann/c.txt), /home/ann/d.txt: bad", "read \"a b.csv\" (c.txt), d.txt: bad");
   expect("--observed-from /home/ann/capture/", "--observed-from capture/");
 }
 
