@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <functional>
 #include <sstream>
 #include <variant>
@@ -190,13 +191,17 @@ void draw(const Arguments& a, const Scene& scene, const Plan& plan, cmap::Progre
   if (!a.turntable.empty()) write_turn(a, scene, plan, progress);
 }
 
+/// Pictures are shown to others: they name files, not folders.
+std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+
 void draw_map(const Arguments& a, const Plan& plan, cmap::ProgressBar& progress) {
   if (!a.panels.empty() || !a.transform.empty()) throw cmap::UsageError("--panels and --transform need a second map");
   progress.update("read", 0.0);
   const cmap::IndexedMap map(cmap::read_point_cloud(a.map, cmap::read_options(plan.evaluation)).cloud);
-  const std::vector<cmap::Layer> layers{cmap::make_layer(map, a.map, plan.layer)};
+  const std::string name = file_name(a.map);
+  const std::vector<cmap::Layer> layers{cmap::make_layer(map, name, plan.layer)};
   const auto describe = [&](const cmap::PointBlocks&, std::size_t slot) { return cmap::describe_point(map, slot); };
-  draw(a, {a.map, layers, map.index.points, describe}, plan, progress);
+  draw(a, {name, layers, map.index.points, describe}, plan, progress);
 }
 
 /// What the panels and their captions need of an evaluation; color only where both maps have it.
@@ -227,7 +232,7 @@ void draw_pair(const Arguments& a, const Plan& plan, cmap::ProgressBar& progress
   const auto describe = [&](const cmap::PointBlocks& points, std::size_t slot) {
     return cmap::describe_point(evaluation, points, slot);
   };
-  const std::string title = fmt::format("{}, {}", a.map, a.estimate);
+  const std::string title = fmt::format("{}, {}", file_name(a.map), file_name(a.estimate));
   draw(a, {title, layers, evaluation.pair.reference.index.points, describe}, plan, progress);
 }
 

@@ -65,7 +65,7 @@ namespace {
 /// The points of a map as one camera sees them; serves every layer of that map.
 struct Sight {
   PixelMap pixels;
-  Array<float> shading_of_colors, shading_of_heat_maps;  ///< made when needed
+  Array<float> shading;  ///< made when needed
 };
 
 PixelMap look_at(const PointBlocks& points, const Projection& projection, const FigureOptions& figure) {
@@ -78,17 +78,16 @@ PixelMap look_at(const PointBlocks& points, const Projection& projection, const 
   return figure.splatter(points, projection, options);
 }
 
-const Array<float>& shading_for(const Layer& layer, const Projection& projection, Sight& sight) {
-  constexpr double kStrong = 0.6, kWeak = 0.35;  // heat maps must stay readable
-  Array<float>& shading = layer.is_heat_map() ? sight.shading_of_heat_maps : sight.shading_of_colors;
-  if (shading.empty()) {
-    shading = eye_dome_shading(sight.pixels, projection, layer.is_heat_map() ? kWeak : kStrong);
-  }
-  return shading;
+/// Null for colors that a legend explains: they stay as they are there.
+const Array<float>* shading_for(const Layer& layer, const Projection& projection, Sight& sight) {
+  constexpr double kStrength = 0.6;
+  if (layer.is_heat_map()) return nullptr;
+  if (sight.shading.empty()) sight.shading = eye_dome_shading(sight.pixels, projection, kStrength);
+  return &sight.shading;
 }
 
 /// Colors, shades and averages the samples of every pixel.
-void paint(Image& image, const Rect& place, const Layer& layer, const PixelMap& pixels, const Array<float>& shading) {
+void paint(Image& image, const Rect& place, const Layer& layer, const PixelMap& pixels, const Array<float>* shading) {
   const auto samples_wide = static_cast<std::size_t>(pixels.width);
   const auto samples = samples_wide / static_cast<std::size_t>(place.width);
   parallel_chunks(static_cast<std::size_t>(place.height), 16, [&](std::size_t begin, std::size_t end) {
@@ -100,7 +99,8 @@ void paint(Image& image, const Rect& place, const Layer& layer, const PixelMap& 
           const std::size_t cell = (y * samples + s / samples) * samples_wide + x * samples + s % samples;
           if (pixels.is_empty(cell)) continue;
           const Rgb8& color = layer.colors[pixels.slot(cell)];
-          for (std::size_t c = 0; c < 3; ++c) sum[c] += shading[cell] * static_cast<float>(color[c]);
+          const float light = shading == nullptr ? 1.0f : (*shading)[cell];
+          for (std::size_t c = 0; c < 3; ++c) sum[c] += light * static_cast<float>(color[c]);
           ++covered;
         }
         if (covered == 0) continue;

@@ -24,29 +24,28 @@ namespace fs = std::filesystem;
 
 constexpr const char* kProgram = "ffmpeg";
 
+void add_words(std::vector<std::string>& words, const std::string& text) {
+  std::istringstream stream(text);
+  for (std::string word; stream >> word;) words.push_back(word);
+}
+
+constexpr const char* kGif = "-filter_complex split[a][b];[a]palettegen[p];[b][p]paletteuse=dither=none -f gif";
+
+/// Players know 4:2:0 alone, which needs even sizes, and guess the color matrix by the size where it is not said.
+constexpr const char* kMp4 =
+    "-vf pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white,"
+    "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int,format=yuv420p "
+    "-colorspace bt709 -color_primaries bt709 -color_trc bt709 -color_range tv "
+    "-c:v libx264 -threads 2 -crf 18 -movflags +faststart -f mp4";
+
 /// A fixed number of threads and no time stamps: the same bytes from every run.
 std::vector<std::string> arguments_for(const fs::path& name, const fs::path& path, int width_px, int height_px,
                                        int frames_per_second) {
-  std::vector<std::string> arguments{kProgram,   "-loglevel",
-                                     "error",    "-y",
-                                     "-f",       "rawvideo",
-                                     "-pix_fmt", "rgb24",
-                                     "-s",       fmt::format("{}x{}", width_px, height_px),
-                                     "-r",       std::to_string(frames_per_second),
-                                     "-i",       "pipe:0"};
-  const std::vector<std::string> gif{"-filter_complex", "split[a][b];[a]palettegen[p];[b][p]paletteuse=dither=none",
-                                     "-f", "gif"};
-  // Players know 4:2:0 alone, which needs even sizes.
-  const std::vector<std::string> mp4{"-vf",       "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white",
-                                     "-c:v",      "libx264",
-                                     "-threads",  "2",
-                                     "-crf",      "18",
-                                     "-pix_fmt",  "yuv420p",
-                                     "-movflags", "+faststart",
-                                     "-f",        "mp4"};
-  const auto& format = lower_case_extension(name) == ".gif" ? gif : mp4;
-  arguments.insert(arguments.end(), format.begin(), format.end());
-  for (const char* word : {"-fflags", "+bitexact", "-flags:v", "+bitexact"}) arguments.emplace_back(word);
+  std::vector<std::string> arguments{kProgram};
+  add_words(arguments, fmt::format("-loglevel error -y -f rawvideo -pix_fmt rgb24 -s {}x{} -r {} -i pipe:0", width_px,
+                                   height_px, frames_per_second));
+  add_words(arguments, lower_case_extension(name) == ".gif" ? kGif : kMp4);
+  add_words(arguments, "-fflags +bitexact -flags:v +bitexact");
   arguments.push_back(path.string());
   return arguments;
 }

@@ -27,4 +27,19 @@ using PairError = double (NearestPairs::*)(std::size_t slot) const;
 
 Distribution distribution_of(const MapPair& pair, PairError error);
 
+/// Values by rank, from which a page counts what lies outside of a range: all of them, or where they are many those of
+/// evenly spaced ranks, the lowest and the highest among them.
+struct RankedValues {
+  std::size_t n = 0;  ///< of which these are some
+  std::vector<double> values;
+};
+
+inline constexpr std::size_t kMostRanked = 10'001;
+
+/// To single precision.
+RankedValues ranked(const Array<double>& values);
+
+/// The errors of one direction that there are: no color, no distance of colors.
+Array<double> errors_of(const NearestPairs& pairs, PairError error);
+
 }  // namespace cmap

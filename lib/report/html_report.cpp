@@ -3,15 +3,15 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "cmap/core/round_number.hpp"
 #include "report/base64.hpp"
 #include "report/distribution.hpp"
 #include "report/embedded_file.hpp"
+#include "report/file_names.hpp"
 #include "report/packed_map.hpp"
+#include "report/page_layers.hpp"
 #include "report/thinning.hpp"
 
 // The page built from web/; its data belongs where kDataPlace stands.
@@ -82,46 +82,6 @@ Json distribution_json(const char* id, const char* title, const char* unit, cons
                       pair.reference.size())}}};
 }
 
-Json height_layer(const char* map, const char* title, const PackedMap& packed) {
-  const auto [low, high] = packed.central_z_m;
-  return {{"id", fmt::format("{}-height", map)},
-          {"title", title},
-          {"map", map},
-          {"kind", "scalar"},
-          {"field", "z"},
-          {"color_map", "viridis"},
-          {"range", {low, high > low ? high : low + 1.0}},
-          {"unit", "m"}};
-}
-
-Json map_layer(const IndexedMap& map, const char* id, const char* title, const PackedMap& packed) {
-  if (!map.has_color()) return height_layer(id, title, packed);
-  return {{"id", id}, {"title", title}, {"map", id}, {"kind", "color"}};
-}
-
-Json error_layer(const char* id, const char* title, const char* field, const char* color_map, const char* unit,
-                 const Distribution& errors) {
-  return {{"id", id},
-          {"title", title},
-          {"map", "estimate"},
-          {"kind", "scalar"},
-          {"field", field},
-          {"color_map", color_map},
-          {"range", {0.0, round_number_above(errors.estimate_to_reference.p95)}},
-          {"unit", unit}};
-}
-
-Json recall_layer(const IndexedMap& reference) {
-  Json classes = Json::array();
-  for (const RecallClassLook& look : kRecallClassLooks) {
-    if (&look == &look_of(RecallClass::kNoColor) && reference.n_without_color == 0) continue;
-    classes.push_back({{"label", look.label}, {"color", {look.color[0], look.color[1], look.color[2]}}});
-  }
-  return {{"id", "lcr"},        {"title", "Local color recall"},
-          {"map", "reference"}, {"kind", "classes"},
-          {"field", "lcr"},     {"classes", classes}};
-}
-
 /// Half of the page's points for each map; what a small one leaves goes to the other.
 std::array<std::size_t, 2> points_of_maps(const MapPair& pair) {
   const std::size_t reference = pair.reference.size(), estimate = pair.estimate.size(), half = kPointsOfPage / 2;
@@ -129,9 +89,7 @@ std::array<std::size_t, 2> points_of_maps(const MapPair& pair) {
           std::min(estimate, kPointsOfPage - std::min(reference, half))};
 }
 
-std::string file_name(const Json& input) {
-  return std::filesystem::path(input.at("path").get<std::string>()).filename().string();
-}
+std::string name_of(const Json& input) { return file_name(input.at("path").get<std::string>()); }
 
 Json named(const char* id, const char* title, const PackedMap& packed) {
   Json map{{"id", id}, {"title", title}};
@@ -154,25 +112,21 @@ PageData page_data(const Json& report, const Evaluation& evaluation) {
   const PackedMap estimate =
       pack_map(pair.estimate_to_reference(), nullptr, evenly_spread_slots(pair.estimate.index.points, n_estimate));
   Json distributions = Json::array();
-  Json layers{map_layer(pair.reference, "reference", "Reference", reference),
-              map_layer(pair.estimate, "estimate", "Estimate", estimate)};
-  if (recall != nullptr) layers.push_back(recall_layer(pair.reference));
+  Json layers{map_layer(pair.reference, "reference", "Reference"), map_layer(pair.estimate, "estimate", "Estimate")};
+  if (evaluation.recall) layers.push_back(recall_layer(*evaluation.recall));
   if (pair.has_color()) {
     const Distribution colors = distribution_of(pair, &NearestPairs::color_distance);
-    const bool every_color = pair.reference.n_without_color + pair.estimate.n_without_color == 0;
-    layers.push_back(error_layer("color-distance",
-                                 every_color ? "Color distance" : "Color distance (0 where a color is missing)",
-                                 "color_distance", "inferno", "unit RGB", colors));
+    layers.push_back(color_distance_layer(pair, colors));
     distributions.push_back(
         distribution_json("color_distance", "Color distance to the nearest point", "unit RGB", colors, pair));
   }
   const Distribution distances = distribution_of(pair, &NearestPairs::distance_m);
-  layers.push_back(error_layer("distance", "Distance to the reference", "distance", "viridis", "m", distances));
+  layers.push_back(distance_layer(pair, distances));
   distributions.insert(distributions.begin(),
                        distribution_json("distance", "Distance to the nearest point", "m", distances, pair));
-  if (pair.estimate.has_color()) layers.push_back(height_layer("estimate", "Height", estimate));
+  if (pair.estimate.has_color()) layers.push_back(height_layer(pair.estimate, "estimate", "Height"));
   const Json& inputs = report.at("inputs");
-  return {{{"title", fmt::format("{} against {}", file_name(inputs.at("estimate")), file_name(inputs.at("reference")))},
+  return {{{"title", fmt::format("{} against {}", name_of(inputs.at("estimate")), name_of(inputs.at("reference")))},
            {"metrics", definitions(evaluation.metrics)},
            {"distributions", distributions},
            {"maps", {named("reference", "Reference", reference), named("estimate", "Estimate", estimate)}},
@@ -185,9 +139,9 @@ PageData page_data(const Json& report, const MapEvaluation& evaluation) {
   const IndexedMap& map = evaluation.map;
   const PackedMap packed = pack_map(map, evenly_spread_slots(map.index.points, kPointsOfPage));
   Json layers = Json::array();
-  if (map.has_color()) layers.push_back(map_layer(map, "estimate", "Map", packed));
-  layers.push_back(height_layer("estimate", "Height", packed));
-  return {{{"title", file_name(report.at("inputs").at("estimate"))},
+  if (map.has_color()) layers.push_back(map_layer(map, "estimate", "Map"));
+  layers.push_back(height_layer(map, "estimate", "Height"));
+  return {{{"title", name_of(report.at("inputs").at("estimate"))},
            {"metrics", definitions(evaluation.metrics)},
            {"distributions", Json::array()},
            {"maps", Json::array({named("estimate", "Map", packed)})},
@@ -205,7 +159,7 @@ void write_page(const Json& report, const PageData& data, OutputFile& file) {
     file.write("</script>\n");
   };
   file.write(page.substr(0, place));
-  script("application/json", "cmap-report", inlined(report));
+  script("application/json", "cmap-report", inlined(shared_report(report)));
   script("application/json", "cmap-page", inlined(data.page));
   script("text/plain", "cmap-points", base64(gzipped(data.points)));
   file.write(page.substr(place + kDataPlace.size()));

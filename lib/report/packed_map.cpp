@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "cmap/core/color.hpp"
+#include "cmap/core/core_box.hpp"
+#include "cmap/core/sampled_indices.hpp"
 
 namespace cmap {
 namespace {
@@ -42,24 +45,84 @@ class PlaneWriter {
   const Array<std::uint32_t>& slots_;
 };
 
+/// Where nearly all points of a map are.
+struct Body {
+  explicit Body(const PointBlocks& points) {
+    std::vector<Eigen::Vector3d> sample;
+    for (std::size_t slot : sampled_indices(points.size, kCoreSample)) sample.push_back(points.world(slot));
+    if (sample.size() >= kFewestForCore) {
+      core = core_box(sample);
+      reach_m = stray_reach_m(core);
+    } else {
+      core = {sample.front(), sample.front()};
+      for (const Eigen::Vector3d& p : sample) core = {core.min.cwiseMin(p), core.max.cwiseMax(p)};
+    }
+  }
+  bool is_stray(const Eigen::Vector3d& p) const { return distance_to(core, p) > reach_m; }
+
+  Box3d core;
+  double reach_m = INFINITY;
+};
+
+/// A millimeter, or of small maps the power of ten below a ten thousandth of their diagonal: the page has far fewer
+/// points across a surface.
+double finest_step_m(const Box3d& core) {
+  constexpr double kLargest_m = 1e-3, kStepsAcross = 1e4;
+  const double diagonal_m = (core.max - core.min).norm();
+  if (!(diagonal_m > 0.0)) return kLargest_m;
+  return std::min(kLargest_m, std::pow(10.0, std::floor(std::log10(diagonal_m / kStepsAcross))));
+}
+
 constexpr unsigned kPositionBytes = 3;
 
-/// Positions in steps of a millimeter, or as fine as three bytes reach.
-void add_positions(PlaneWriter& writer, PackedMap& packed, const PointBlocks& points,
-                   const Array<std::uint32_t>& slots) {
-  Eigen::Vector3d low = Eigen::Vector3d::Constant(INFINITY), high = -low;
-  for (std::uint32_t slot : slots) {
-    low = low.cwiseMin(points.world(slot));
-    high = high.cwiseMax(points.world(slot));
+/// Points are counted in steps from one corner.
+struct Grid {
+  /// As fine as asked for, or as three bytes reach.
+  Grid(const PointBlocks& points, std::span<const std::uint32_t> slots, double finest_m) {
+    Eigen::Vector3d high = -origin;
+    for (std::uint32_t slot : slots) {
+      origin = origin.cwiseMin(points.world(slot));
+      high = high.cwiseMax(points.world(slot));
+    }
+    constexpr double kMost = (1u << (8 * kPositionBytes)) - 1;
+    step = ((high - origin) / kMost).cwiseMax(finest_m);
   }
-  constexpr double kMost = (1u << (8 * kPositionBytes)) - 1;
-  const Eigen::Vector3d step = ((high - low) / kMost).cwiseMax(1e-3);
-  packed.description["origin_m"] = {low.x(), low.y(), low.z()};
-  packed.description["step_m"] = {step.x(), step.y(), step.z()};
+  std::uint32_t at(const Eigen::Vector3d& p, int axis) const {
+    return static_cast<std::uint32_t>(std::lround((p[axis] - origin[axis]) / step[axis]));
+  }
+
+  Eigen::Vector3d origin = Eigen::Vector3d::Constant(INFINITY), step;
+};
+
+/// The points of a page, strays last.
+struct PageSlots {
+  PageSlots(const PointBlocks& points, const Array<std::uint32_t>& all) : body(points), slots(all) {
+    const auto strays =
+        std::ranges::stable_partition(slots, [&](std::uint32_t slot) { return !body.is_stray(points.world(slot)); });
+    n_near = slots.size() - strays.size();
+  }
+
+  Body body;
+  Array<std::uint32_t> slots;
+  std::size_t n_near;
+};
+
+/// Strays have a grid of their own, so that they do not coarsen that of the map.
+void add_positions(PlaneWriter& writer, PackedMap& packed, const PointBlocks& points, const PageSlots& page) {
+  const std::span<const std::uint32_t> slots(page.slots);
+  std::vector<Grid> grids;
+  for (const auto part : {slots.first(page.n_near), slots.subspan(page.n_near)}) {
+    const Grid& grid = grids.emplace_back(points, part, finest_step_m(page.body.core));
+    if (part.empty()) continue;
+    packed.description["grids"].push_back({{"points", part.size()},
+                                           {"origin_m", {grid.origin.x(), grid.origin.y(), grid.origin.z()}},
+                                           {"step_m", {grid.step.x(), grid.step.y(), grid.step.z()}}});
+  }
   const char* names[] = {"x", "y", "z"};
   for (int axis = 0; axis < 3; ++axis) {
     writer.add(names[axis], kPositionBytes, Json::object(), [&](std::uint32_t slot) {
-      return static_cast<std::uint32_t>(std::lround((points.world(slot)[axis] - low[axis]) / step[axis]));
+      const Eigen::Vector3d p = points.world(slot);
+      return grids[page.body.is_stray(p) ? 1 : 0].at(p, axis);
     });
   }
 }
@@ -72,50 +135,57 @@ void add_colors(PlaneWriter& writer, const IndexedMap& map) {
   }
 }
 
-/// The page's planes hold numbers only: an error that is not there, for want of a color, is packed as 0.
+/// An error that is not there (NaN) has the last code. Strays have a largest error of their own, which would coarsen
+/// the others.
 template <class ErrorAt>
-void add_error(PlaneWriter& writer, const char* field, const char* unit, const Array<std::uint32_t>& slots,
+void add_error(PackedMap& packed, const char* field, const char* unit, const PointBlocks& points, const PageSlots& page,
                ErrorAt&& error_at) {
-  double most = 0.0;
-  for (std::uint32_t slot : slots) most = std::max(most, error_at(slot));
-  constexpr double kSteps = 65535.0;
-  writer.add(field, 2, {{"max", most}, {"unit", unit}}, [&](std::uint32_t slot) {
-    return most > 0.0 ? static_cast<std::uint32_t>(std::lround(kSteps * std::sqrt(error_at(slot) / most))) : 0u;
+  std::array<double, 2> most{};
+  const auto most_of = [&](std::uint32_t slot) -> double& {
+    return most[page.body.is_stray(points.world(slot)) ? 1 : 0];
+  };
+  for (std::uint32_t slot : page.slots) most_of(slot) = std::max(most_of(slot), error_at(slot));
+  constexpr std::uint32_t kNone = 65535;
+  constexpr double kSteps = 65534.0;
+  PlaneWriter(packed, page.slots).add(field, 2, {{"max", most}, {"unit", unit}}, [&](std::uint32_t slot) {
+    const double error = error_at(slot), largest = most_of(slot);
+    if (std::isnan(error)) return kNone;
+    return largest > 0.0 ? static_cast<std::uint32_t>(std::lround(kSteps * std::sqrt(error / largest))) : 0u;
   });
 }
 
-std::array<double, 2> central_z_m(const PointBlocks& points, const Array<std::uint32_t>& slots) {
-  Array<double> z;
-  for (std::uint32_t slot : slots) z.push_back(points.world(slot).z());
-  std::ranges::sort(z);
-  const auto at = [&](double share) { return z[static_cast<std::size_t>(share * static_cast<double>(z.size() - 1))]; };
-  return {at(0.01), at(0.99)};
+PackedMap packed_look(const IndexedMap& map, const PageSlots& page) {
+  const PointBlocks& points = map.index.points;
+  PackedMap packed;
+  packed.description = {{"points", page.slots.size()},
+                        {"points_of_map", points.size},
+                        {"grids", Json::array()},
+                        {"planes", Json::array()}};
+  PlaneWriter writer(packed, page.slots);
+  add_positions(writer, packed, points, page);
+  if (map.has_color()) add_colors(writer, map);
+  return packed;
 }
 
 }  // namespace
 
 PackedMap pack_map(const IndexedMap& map, const Array<std::uint32_t>& slots) {
-  const PointBlocks& points = map.index.points;
-  PackedMap packed;
-  packed.central_z_m = central_z_m(points, slots);
-  packed.description = {{"points", slots.size()}, {"points_of_map", points.size}, {"planes", Json::array()}};
-  PlaneWriter writer(packed, slots);
-  add_positions(writer, packed, points, slots);
-  if (map.has_color()) add_colors(writer, map);
-  return packed;
+  return packed_look(map, PageSlots(map.index.points, slots));
 }
 
 PackedMap pack_map(const NearestPairs& pairs, const LocalColorRecall* recall, const Array<std::uint32_t>& slots) {
-  PackedMap packed = pack_map(pairs.from, slots);
-  PlaneWriter writer(packed, slots);
-  add_error(writer, "distance", "m", slots, [&](std::uint32_t slot) { return pairs.distance_m(slot); });
+  const PointBlocks& points = pairs.from.index.points;
+  const PageSlots page(points, slots);
+  PackedMap packed = packed_look(pairs.from, page);
+  add_error(packed, "distance", "m", points, page, [&](std::uint32_t slot) { return pairs.distance_m(slot); });
   if (pairs.from.has_color() && pairs.to.has_color()) {
-    add_error(writer, "color_distance", "unit RGB", slots,
-              [&](std::uint32_t slot) { return pairs.has_colors(slot) ? pairs.color_distance(slot) : 0.0; });
+    add_error(packed, "color_distance", "unit RGB", points, page,
+              [&](std::uint32_t slot) { return pairs.color_distance(slot); });
   }
   if (recall != nullptr) {
-    writer.add("lcr", 1, Json::object(),
-               [&](std::uint32_t slot) { return static_cast<std::uint32_t>(recall->classes[slot]); });
+    PlaneWriter(packed, page.slots).add("lcr", 1, Json::object(), [&](std::uint32_t slot) {
+      return static_cast<std::uint32_t>(recall->classes[slot]);
+    });
   }
   return packed;
 }

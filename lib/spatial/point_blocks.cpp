@@ -9,7 +9,7 @@
 #include "cmap/core/color.hpp"
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
-#include "spatial/radix_sort.hpp"
+#include "cmap/spatial/radix_sort.hpp"
 #include "spatial/simd/kernels.hpp"
 
 namespace cmap {

@@ -1,4 +1,4 @@
-#include "spatial/radix_sort.hpp"
+#include "cmap/spatial/radix_sort.hpp"
 
 #include <algorithm>
 #include <array>

@@ -45,6 +45,64 @@ TEST(DrawFigure, OnePointFlatAndFarMapsAreSeen) {
   EXPECT_EQ(reds(flat), here) << "wherever it lies";
 }
 
+/// Steps of 2 m, in whose corners the shading of a map's own colors is deep.
+PointBlocks stairs() {
+  PointCloud cloud;
+  for (int i = 0; i < 400 * 400; ++i) {
+    const int x = i % 400, y = i / 400;
+    cloud.positions.push_back({0.05f * static_cast<float>(x), 0.05f * static_cast<float>(y),
+                               2.0f * static_cast<float>((x / 40 + y / 40) % 4)});
+  }
+  return sort_points(cloud);
+}
+
+/// How many of the pixels of the picture's upper right, where no writing is, are the color, and how many are neither it
+/// nor the color over the white of its edges.
+std::pair<std::size_t, std::size_t> true_and_false_pixels(const Image& image, Rgb8 color) {
+  std::size_t n_true = 0, n_false = 0;
+  for (int y = 32; y < 160; ++y) {
+    for (int x = 200; x < 388; ++x) {
+      const Rgba8& p = image.at(x, y);
+      const double cover = (255.0 - p[0]) / (255.0 - color[0]);
+      bool is_mixed = cover < 1.01;
+      for (std::size_t c = 0; c < 3; ++c)
+        is_mixed = is_mixed && std::abs(255.0 - cover * (255.0 - color[c]) - p[c]) < 3.0;
+      if (p[0] == color[0] && p[1] == color[1] && p[2] == color[2]) {
+        ++n_true;
+      } else if (!is_mixed) {
+        ++n_false;
+      }
+    }
+  }
+  return {n_true, n_false};
+}
+
+/// A patch of one value has the color that the color bar has there, from wherever it is seen.
+TEST(DrawFigure, ColorsWithALegendAreThoseOfTheLegend) {
+  const PointBlocks points = stairs();
+  const Rgb8 color = color_table(ColorMap::kViridis)[128];
+  Layer bar, classes, own;
+  bar.scale = ColorScale{};
+  classes.classes = {{"all", color}};
+  const FigureOptions options{400, 300, Background::kWhite, 1.0};
+  for (View view : {View::kTop, View::kOblique, View::kFront, View::kSide, View::kFit}) {
+    for (bool orthographic : {false, true}) {
+      const Camera camera = camera_for(view, points, panel_aspect(1, options), orthographic);
+      const auto pixels = [&](Layer layer) {
+        layer.points = &points;
+        layer.colors = Array<Rgb8>(points.size, color);
+        return true_and_false_pixels(draw_figure({&layer, 1}, camera, options), color);
+      };
+      for (const Layer* layer : {&bar, &classes}) {
+        const auto [n_true, n_false] = pixels(*layer);
+        EXPECT_GT(n_true, 500u) << static_cast<int>(view) << orthographic;
+        EXPECT_EQ(n_false, 0u) << static_cast<int>(view) << orthographic;
+      }
+      EXPECT_GT(pixels(own).second, 20u) << "a map's own colors are shaded " << static_cast<int>(view) << orthographic;
+    }
+  }
+}
+
 TEST(DrawFigure, BackgroundsAreWhatTheyAreCalled) {
   const IndexedMap map(test::painted_sheet(1000, 2));
   const auto corner = [&](Background background) { return picture(map, {400, 300, background, 1.0}).at(399, 0); };

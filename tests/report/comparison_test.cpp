@@ -317,6 +317,17 @@ TEST(FormatComparison, NamesAlignmentsAndVersionsThatDiffer) {
   EXPECT_THAT(table, HasSubstr("9.9.9 for c"));
 }
 
+TEST(FormatComparison, NamesFilesAndNoFolders) {
+  Json report = some_report();
+  report["inputs"]["reference"]["path"] = "/home/ann lee/maps/ref.ply";
+  for (const auto format :
+       {ComparisonFormat::kText, ComparisonFormat::kMarkdown, ComparisonFormat::kLatex, ComparisonFormat::kHtml}) {
+    const std::string text = format_comparison({saved("a", report)}, {}, format);
+    EXPECT_THAT(text, HasSubstr("reference ref.ply: ")) << static_cast<int>(format);
+    EXPECT_THAT(text, Not(HasSubstr("/home"))) << static_cast<int>(format);
+  }
+}
+
 TEST(FormatComparison, NamesCannotBreakThePage) {
   std::vector<SavedReport> reports = three_reports();
   reports[0].name = "<script>alert(1)</script>";

@@ -49,5 +49,23 @@ TEST(Distribution, OfEqualMapsIsAllInTheFirstBin) {
   EXPECT_GT(found.bin_width, 0.0);
 }
 
+TEST(Ranked, AllValuesOfAFew) {
+  const RankedValues few = ranked({3.0, 1.0, 2.0, 1.0});
+  EXPECT_EQ(few.n, 4u);
+  EXPECT_EQ(few.values, (std::vector<double>{1.0, 1.0, 2.0, 3.0}));
+  EXPECT_EQ(ranked({7.0}).values, std::vector<double>{7.0});
+  EXPECT_EQ(ranked({0.5, -2.0, -0.25, 0.0, -1e6}).values, (std::vector<double>{-1e6, -2.0, -0.25, 0.0, 0.5}));
+  EXPECT_TRUE(ranked({}).values.empty());
+}
+
+TEST(Ranked, EvenlySpacedRanksOfMany) {
+  Array<double> values(3 * (kMostRanked - 1) + 1);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(values.size() - i);  // 1 to n
+  const RankedValues many = ranked(values);
+  EXPECT_EQ(many.n, values.size());
+  ASSERT_EQ(many.values.size(), kMostRanked);
+  for (std::size_t i = 0; i < kMostRanked; ++i) ASSERT_EQ(many.values[i], static_cast<double>(3 * i + 1));
+}
+
 }  // namespace
 }  // namespace cmap

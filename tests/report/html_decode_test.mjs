@@ -16,8 +16,8 @@ async function load(path) {
 }
 
 const { bytesOfBase64, decodePlanes, gunzip } = await load('src/decode.ts');
-const { coordinateDecimals, fieldValue, worldPoint } = await load('src/point_map.ts');
-const { colorIndex } = await load('src/layers.ts');
+const { centralBounds, coordinateDecimals, fieldValue, pointMap, spacing, worldPoint } = await load('src/point_map.ts');
+const { colorIndex, sharesOutside } = await load('src/layers.ts');
 const { basis, dot, eye, fieldOfView, fit } = await load('src/orbit.ts');
 
 const plane = (field, type) => ({ field, type });
@@ -67,18 +67,71 @@ test('base64 and gzip', async () => {
   assert.deepEqual(await gunzip(bytesOfBase64('H4sIAAAAAAAAA0tMSgYAwkEkNQMAAAA=')), Uint8Array.of(97, 98, 99));
 });
 
-test('coordinates and fields of a point', () => {
-  const text = { origin_m: [500000, 4000000, -2], step_m: [0.001, 0.002, 0.5], planes: [{ field: 'distance', max: 8 }] };
-  const word = (value) => Uint16Array.of(value);
-  const values = new Map([['x', word(250)], ['y', word(1000)], ['z', word(3)], ['distance', word(65535)]]);
-  const map = { text, values };
+test('coordinates and fields of a point, and of a stray', () => {
+  const grids = [
+    { points: 1, origin_m: [500000, 4000000, -2], step_m: [0.001, 0.002, 0.5] },
+    { points: 1, origin_m: [-1e6, 0, 0], step_m: [8, 8, 8] },
+  ];
+  const text = { grids, planes: [{ field: 'distance', max: [8, 1e6] }] };
+  const words = (...list) => Uint16Array.from(list);
+  const values = new Map([['x', words(250, 1)], ['y', words(1000, 2)], ['z', words(3, 0)], ['distance', words(65534, 65534)]]);
+  const map = pointMap(text, values);
   assert.deepEqual(worldPoint(map, 0), [500000.25, 4000002, -0.5]);
+  assert.deepEqual(worldPoint(map, 1), [-999992, 16, 0]);
   assert.equal(fieldValue(map, 'z')(0), -0.5, 'z is the height in meters');
   assert.equal(fieldValue(map, 'distance')(0), 8, 'the largest code is the largest value');
-  values.set('distance', word(13107)); // a fifth: 1/25 of the largest value
-  assert.ok(Math.abs(fieldValue(map, 'distance')(0) - 0.32) < 1e-12);
+  assert.equal(fieldValue(map, 'distance')(1), 1e6, 'of strays the largest of theirs');
+  values.set('distance', words(32767, 65535)); // a half: 1/4 of the largest value
+  assert.equal(fieldValue(map, 'distance')(0), 2);
+  assert.ok(Number.isNaN(fieldValue(map, 'distance')(1)), 'the last code is none');
   assert.equal(fieldValue(map, 'lcr'), undefined, 'no such plane');
   assert.equal(coordinateDecimals(map), 3);
+  assert.throws(() => pointMap({ ...text, id: 'm' }, new Map()), /map m has no plane x/);
+});
+
+/** A map of these points, in whole meters. */
+function mapOf(points) {
+  const grids = [{ points: points.length, origin_m: [-1000, -1000, -1000], step_m: [1, 1, 1] }];
+  const plane = (k) => Uint32Array.from(points, (point) => point[k] + 1000);
+  return pointMap({ grids, planes: [] }, new Map(['x', 'y', 'z'].map((axis, k) => [axis, plane(k)])));
+}
+
+const square = Array.from({ length: 41 * 41 }, (_, i) => [10 * (i % 41), 10 * Math.floor(i / 41), 0]);
+const stack = (count, point) => Array.from({ length: count }, () => point);
+
+test('the bounds of a map are those of its points', () => {
+  assert.deepEqual(centralBounds(mapOf(square)), { min: [0, 0, 0], max: [400, 400, 0] });
+  assert.deepEqual(centralBounds(mapOf([[1, 2, 3]])), { min: [1, 2, 3], max: [1, 2, 3] });
+  // A tower of six points: 0.4 % of the map.
+  const tower = Array.from({ length: 6 }, (_, i) => [200, 200, 20 * (i + 1)]);
+  assert.deepEqual(centralBounds(mapOf([...square, ...tower])).max, [400, 400, 120]);
+});
+
+test('strays are outside of the bounds', () => {
+  assert.deepEqual(centralBounds(mapOf([...square, [0, 0, -150]])).min, [0, 0, 0], 'one below');
+  assert.deepEqual(centralBounds(mapOf([...square, ...stack(60, [900, 0, 0])])).max, [400, 400, 0], '3 % on one side');
+  // In steps of 20 m, within a tenth of the diagonal of the middle 380 x 380 m: they count up to half of it, 269 m.
+  const row = Array.from({ length: 50 }, (_, i) => [0, 0, -20 * i]);
+  assert.deepEqual(centralBounds(mapOf([...square, ...row])).min, [0, 0, -260]);
+});
+
+test('copies of points are no spacing', () => {
+  const line = Array.from({ length: 30 }, (_, i) => [3 * Math.floor(i / 3), 0, 0]);
+  assert.equal(spacing(mapOf(line)), 3);
+  assert.equal(spacing(mapOf([[0, 0, 0]])), 0);
+});
+
+test('shares outside of a range are those of all points', () => {
+  const all = { ranked: { points: 5, values: [0, 0.1, 0.1, 0.2, 3] } };
+  assert.deepEqual(sharesOutside(all, [0, 0.1]), [0, 0.4], 'the ends are within');
+  assert.deepEqual(sharesOutside(all, [0.1, 0.15]), [0.2, 0.4]);
+  assert.deepEqual(sharesOutside(all, [-1, 3]), [0, 0]);
+  assert.deepEqual(sharesOutside(all, [5, 6]), [1, 0]);
+  assert.deepEqual(sharesOutside({ ranked: { points: 0, values: [] } }, [0, 1]), [0, 0]);
+  // 1001 points 0, 1 ... 1000, of which every hundredth is listed: what lies between is taken to rise evenly.
+  const some = { ranked: { points: 1001, values: Array.from({ length: 11 }, (_, i) => 100 * i) } };
+  assert.deepEqual(sharesOutside(some, [250, 750]), [250 / 1001, 250 / 1001]);
+  assert.deepEqual(sharesOutside(some, [100, 900]), [100 / 1001, 100 / 1001]);
 });
 
 test('places in a color map', () => {

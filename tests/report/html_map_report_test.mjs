@@ -1,17 +1,12 @@
-// The page of one map in a real browser: node html_map_report_test.mjs, with CMAP_EVAL, CMAP_WEB_FOLDER and
-// CMAP_CHROMIUM as in html_report_test.mjs.
+// The page of one map in a real browser: node html_map_report_test.mjs, with CMAP_EVAL and what browser.mjs needs.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { fileURLToPath, pathToFileURL } from 'node:url';
-
-const source = fileURLToPath(new URL('../../', import.meta.url));
-const web = process.env.CMAP_WEB_FOLDER ?? join(source, 'lib/report/web');
-const { chromium } = createRequire(join(web, 'package.json'))('playwright-core');
+import { pathToFileURL } from 'node:url';
+import { launch, source } from './browser.mjs';
 
 const folder = mkdtempSync(join(tmpdir(), 'cmap-html-'));
 const [html, json, exact] = ['map.html', 'map.json', 'exact.html'].map((name) => join(folder, name));
@@ -34,10 +29,7 @@ async function open(path) {
 
 let page;
 before(async () => {
-  browser = await chromium.launch({
-    executablePath: process.env.CMAP_CHROMIUM ?? '/usr/bin/chromium',
-    args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
-  });
+  browser = await launch();
   page = await open(html);
 });
 after(async () => {

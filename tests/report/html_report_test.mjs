@@ -1,20 +1,14 @@
 // The HTML report in a real browser: node html_report_test.mjs [REPORT.html REPORT.json], by default the report that
-// CMAP_EVAL makes of the tum_fr1 pair, or of the town where that is absent. Needs `npm ci` in lib/report/web or a copy of
-// it (CMAP_WEB_FOLDER), and Chromium (CMAP_CHROMIUM, by default /usr/bin/chromium).
+// CMAP_EVAL makes of the tum_fr1 pair, or of the town where that is absent. Needs what browser.mjs says.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { existsSync, mkdtempSync, rmSync } from 'node:fs';
 import { readFile } from 'node:fs/promises';
-import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
-import { join, resolve } from 'node:path';
+import { basename, dirname, join, resolve } from 'node:path';
 import { after, before, test } from 'node:test';
-import { fileURLToPath, pathToFileURL } from 'node:url';
-
-const source = fileURLToPath(new URL('../../', import.meta.url));
-const web = process.env.CMAP_WEB_FOLDER ?? join(source, 'lib/report/web');
-const require = createRequire(join(web, 'package.json'));
-const { chromium } = require('playwright-core');
+import { pathToFileURL } from 'node:url';
+import { colorAt, colorOffset, launch, outlineFaults, pixels as pixelsOf, source } from './browser.mjs';
 
 function makeReport() {
   const program = process.env.CMAP_EVAL;
@@ -35,20 +29,6 @@ const url = pathToFileURL(resolve(htmlPath)).href;
 const reportText = await readFile(jsonPath, 'utf8');
 const report = JSON.parse(reportText);
 
-const launchOptions = {
-  executablePath: process.env.CMAP_CHROMIUM ?? '/usr/bin/chromium',
-  args: [
-    '--no-sandbox',
-    '--use-gl=angle',
-    '--use-angle=swiftshader',
-    '--enable-unsafe-swiftshader',
-    '--disable-background-networking',
-    '--disable-component-update',
-    '--disable-sync',
-    '--no-first-run',
-    '--disable-quic',
-  ],
-};
 const firstFrameLimitMs = 3000;
 const whenReady = (opened) => opened.locator('html[data-ready]').waitFor({ timeout: 30_000 });
 
@@ -75,32 +55,12 @@ async function openReady(options = {}) {
 }
 
 before(async () => {
-  browser = await chromium.launch(launchOptions);
+  browser = await launch();
   page = await openReady();
 });
 after(() => browser.close());
 
-/** Pixels of what is on the screen there: { width, height, data } with four bytes each. */
-async function pixels(target) {
-  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-  const png = await target.screenshot({ caret: 'initial' });
-  const helper = await (await browser.newContext()).newPage();
-  const picture = await helper.evaluate(async (base64) => {
-    const bytes = Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
-    const bitmap = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
-    const pen = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
-    pen.drawImage(bitmap, 0, 0);
-    const { data } = pen.getImageData(0, 0, bitmap.width, bitmap.height);
-    let text = '';
-    for (let i = 0; i < data.length; i += 32768) text += String.fromCharCode(...data.subarray(i, i + 32768));
-    return { width: bitmap.width, height: bitmap.height, base64: btoa(text) };
-  }, png.toString('base64'));
-  await helper.context().close();
-  return { ...picture, data: Buffer.from(picture.base64, 'base64') };
-}
-
-const colorAt = ({ data, width }, x, y) => [...data.subarray(4 * (y * width + x), 4 * (y * width + x) + 3)];
-const colorOffset = (a, b) => Math.max(...a.map((value, k) => Math.abs(value - b[k])));
+const pixels = (target) => pixelsOf(browser, page, target);
 const canvas = () => page.locator('#map canvas');
 
 /** Share of the pixels that differ between two pictures. */
@@ -424,10 +384,22 @@ test('the cumulative share at the end of the axis counts what lies beyond', asyn
   });
 });
 
-test('the downloaded report is the report', async () => {
+test('the downloaded report is the report, with names of files in place of paths', async () => {
   const [download] = await Promise.all([page.waitForEvent('download'), page.locator('[data-action=download]').click()]);
   assert.equal(download.suggestedFilename(), 'report.json');
-  assert.deepEqual(JSON.parse(await readFile(await download.path(), 'utf8')), report);
+  const shared = JSON.parse(reportText);
+  for (const input of Object.values(shared.inputs)) input.path = basename(input.path);
+  const words = shared.run.command.split(' ');
+  shared.run.command = words.map((word) => (word.startsWith('/') ? basename(word) : word)).join(' ');
+  assert.deepEqual(JSON.parse(await readFile(await download.path(), 'utf8')), shared);
+});
+
+test('no folder of whoever made the page is in it', async () => {
+  const html = await readFile(htmlPath, 'utf8');
+  for (const { path } of Object.values(report.inputs)) {
+    assert.ok(path.startsWith('/'), 'the report itself holds the path');
+    assert.ok(!html.includes(dirname(path)), `${dirname(path)} is in the page`);
+  }
 });
 
 test('the screenshot is a PNG that is not empty', async () => {
@@ -493,6 +465,10 @@ test('400 pixels are wide enough', async () => {
   await opened.context().close();
 });
 
+test('one main landmark, and headings in order', async () => {
+  assert.deepEqual(await outlineFaults(page), []);
+});
+
 test('without WebGL everything else works', async () => {
   const context = await browser.newContext();
   const opened = await context.newPage();
@@ -550,7 +526,7 @@ test('damaged data is told', async () => {
 test('text of the report is never markup', async () => {
   const evil = '<img src=x onerror=alert(1)><b>path</b>';
   const written = JSON.stringify(evil).slice(1, -1).replaceAll('<', '\\u003c');
-  const path = JSON.stringify(report.inputs.estimate.path).slice(1, -1);
+  const path = JSON.stringify(basename(report.inputs.estimate.path)).slice(1, -1);
   const opened = await openChanged((html) =>
     ['"path": ', '"path":'].reduce((text, key) => text.replaceAll(`${key}"${path}"`, `${key}"${written}"`), html),
   );

@@ -1,17 +1,13 @@
 // The pages of tables in a real browser: the one of CMAP_LEADERBOARD on the sample maps beside the paper's numbers, and
-// one of CMAP_COMPARE. Needs what html_report_test.mjs needs.
+// one of CMAP_COMPARE. Needs what browser.mjs says.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { fileURLToPath, pathToFileURL } from 'node:url';
-
-const source = fileURLToPath(new URL('../../', import.meta.url));
-const require = createRequire(join(process.env.CMAP_WEB_FOLDER ?? join(source, 'lib/report/web'), 'package.json'));
-const { chromium } = require('playwright-core');
+import { launch, outlineFaults, source } from './browser.mjs';
 
 const folder = mkdtempSync(join(tmpdir(), 'cmap-leaderboard-'));
 process.on('exit', () => rmSync(folder, { recursive: true }));
@@ -49,9 +45,7 @@ async function open(path, options = {}) {
 }
 
 before(async () => {
-  const args = ['--no-sandbox', '--disable-background-networking', '--disable-component-update', '--disable-sync'];
-  const executablePath = process.env.CMAP_CHROMIUM ?? '/usr/bin/chromium';
-  browser = await chromium.launch({ executablePath, args: [...args, '--no-first-run', '--disable-quic'] });
+  browser = await launch();
   page = await open(leaderboard);
 });
 after(() => browser.close());
@@ -149,6 +143,13 @@ test('a comparison sorts too', async () => {
   const names = await rowNames(table);
   assert.deepEqual(names, [...names].sort(new Intl.Collator('en', { numeric: true }).compare));
   assert.ok((await opened.locator('#gains td.better').count()) > 0);
+  await opened.context().close();
+});
+
+test('one main landmark, and headings in order', async () => {
+  assert.deepEqual(await outlineFaults(page), []);
+  const opened = await open(comparison);
+  assert.deepEqual(await outlineFaults(opened), []);
   await opened.context().close();
 });
 

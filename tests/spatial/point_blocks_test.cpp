@@ -7,7 +7,7 @@
 
 #include "cmap/core/parallel.hpp"
 #include "spatial/clouds.hpp"
-#include "spatial/radix_sort.hpp"
+#include "cmap/spatial/radix_sort.hpp"
 
 namespace cmap {
 namespace {

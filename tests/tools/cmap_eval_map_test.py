@@ -7,7 +7,7 @@ import unittest
 import numpy as np
 from scipy.spatial import cKDTree
 
-from cmap_eval_html_test import element, read, unpacked
+from cmap_eval_html_test import element, read, shared, unpacked
 from cmap_eval_testing import DONE, INPUT, NOT_MET, SCHEMA, TOWN, UNSUPPORTED, USAGE, CmapEval, jsonschema, ply
 
 MAP = TOWN / "estimate.ply"
@@ -75,7 +75,7 @@ class OneMap(CmapEval):
         result = self.run_program(MAP, "--html", html, "-o", self.json)
         self.assertEqual((result.returncode, result.stderr), (DONE, b""))
         page = html.read_text()
-        self.assertEqual(json.loads(element(page, "cmap-report")), json.loads(self.json.read_text()))
+        self.assertEqual(json.loads(element(page, "cmap-report")), shared(json.loads(self.json.read_text())))
         description, maps = unpacked(page)
         self.assertEqual(description["title"], "estimate.ply")
         self.assertEqual([layer["id"] for layer in description["layers"]], ["estimate", "estimate-height"])

@@ -80,7 +80,7 @@ class Render(unittest.TestCase):
         )
         self.assertNotEqual(wide, narrow)
         self.picture.unlink()
-        self.refused(USAGE, "--lcr-tau: 0.0 must be above 0", REFERENCE, ESTIMATE, "-o", self.picture, "--lcr-tau", "0")
+        self.refused(USAGE, "--lcr-tau: 0 must be above 0", REFERENCE, ESTIMATE, "-o", self.picture, "--lcr-tau", "0")
 
     def test_a_pair_without_a_display(self):
         png = self.draw(REFERENCE, ESTIMATE, "--quiet")
@@ -131,6 +131,15 @@ class Render(unittest.TestCase):
     def test_one_map(self):
         png = self.draw(REFERENCE, "--camera", "top", "--orthographic", "--size", "640x480", "--background", "transparent")
         self.assertEqual(struct.unpack(">II", png[16:24]), (640, 480))
+
+    def test_pictures_name_files_and_no_folders(self):
+        pictures = set()
+        for name in ("ann", "a much longer home"):
+            (self.folder / name).mkdir()
+            copy = self.folder / name / "map.ply"
+            copy.write_bytes(REFERENCE.read_bytes())
+            pictures.add(self.draw(copy, "--size", "480x320"))
+        self.assertEqual(len(pictures), 1)
 
     def test_jpeg(self):
         self.picture = self.folder / "figure.jpg"

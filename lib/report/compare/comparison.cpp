@@ -10,6 +10,7 @@
 #include "report/compare/html_tables.hpp"
 #include "report/compare/score_table.hpp"
 #include "report/compare/version_notes.hpp"
+#include "report/file_names.hpp"
 #include "report/table_text.hpp"
 
 namespace cmap {
@@ -98,9 +99,9 @@ std::vector<std::string> notes_on(const std::vector<SavedReport>& reports, const
   const Json& inputs = reports.front().json.at("inputs");
   if (inputs.contains("reference")) {
     const Json& reference = inputs.at("reference");
-    notes.push_back(fmt::format("reference {}: {} points, SHA-256 {}", reference.at("path").get<std::string>(),
-                                with_thousands(reference.at("finite_points")),
-                                reference.at("sha256").get<std::string>().substr(0, 12)));
+    notes.push_back(fmt::format(
+        "reference {}: {} points, SHA-256 {}", file_name(reference.at("path").get<std::string>()),
+        with_thousands(reference.at("finite_points")), reference.at("sha256").get<std::string>().substr(0, 12)));
     if (auto alignments = difference(reports, Json::json_pointer("/alignment/method"))) {
       notes.push_back(fmt::format("alignment: {}", *alignments));
     }

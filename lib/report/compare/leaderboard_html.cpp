@@ -3,6 +3,7 @@
 #include "cmap/eval/metric_catalog.hpp"
 #include "report/compare/html_tables.hpp"
 #include "report/compare/leaderboard_tables.hpp"
+#include "report/file_names.hpp"
 
 namespace cmap {
 namespace {
@@ -25,7 +26,7 @@ std::string link(const LeaderboardPair& pair, const char* file, const char* text
 
 std::string map_cell(const LeaderboardPair& pair) {
   if (pair.state != PairState::kDone) {
-    return fmt::format("<td class=\"none\" title=\"{}\">{}</td>", escaped_html(pair.reason),
+    return fmt::format("<td class=\"none\" title=\"{}\">{}</td>", escaped_html(with_file_names(pair.reason)),
                        pair.state == PairState::kFailed ? "failed" : "missing");
   }
   return fmt::format("<td>{} · {}{}</td>", link(pair, "report.html", "report"), link(pair, "report.json", "JSON"),
@@ -110,7 +111,7 @@ void add_parameters(HtmlPage& page, const EvaluationOptions& options) {
   for (const auto& [name, value] : parameters.items()) {
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, value.dump());
   }
-  page.add_paragraph(text);
+  page.add_paragraph(with_file_names(text));
 }
 
 }  // namespace

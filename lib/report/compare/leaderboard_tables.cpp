@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "cmap/eval/metric_catalog.hpp"
+#include "report/file_names.hpp"
 #include "report/table_text.hpp"
 
 namespace cmap {
@@ -225,7 +226,7 @@ std::vector<std::string> leaderboard_notes(const LeaderboardManifest& manifest,
   for (const LeaderboardPair& pair : pairs) {
     if (pair.state == PairState::kDone) continue;
     notes.push_back(fmt::format("{} {} / {}: {}", pair.state == PairState::kFailed ? kFailedMark : kNoValue,
-                                pair.sequence, pair.method, pair.reason));
+                                pair.sequence, pair.method, with_file_names(pair.reason)));
   }
   if (!manifest.published) return notes;
   const PublishedScores& published = *manifest.published;

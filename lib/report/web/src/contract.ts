@@ -58,8 +58,16 @@ export interface Distribution {
 export interface Plane {
   field: string;
   type: 'u8' | 'u16' | 'u24';
-  max?: number;
+  /** Largest value, of the points of each grid. */
+  max?: number[];
   unit?: string;
+}
+
+/** Positions are counted in steps from an origin. */
+export interface Grid {
+  points: number;
+  origin_m: number[];
+  step_m: number[];
 }
 
 export interface MapText {
@@ -67,8 +75,8 @@ export interface MapText {
   title: string;
   points: number;
   points_of_map: number;
-  origin_m: number[];
-  step_m: number[];
+  /** Of the map and, where it has any, of its strays, which are the last points. */
+  grids: Grid[];
   planes: Plane[];
 }
 
@@ -78,7 +86,13 @@ export interface ColorLayer {
 export interface ClassLayer {
   kind: 'classes';
   field: string;
-  classes: { label: string; color: number[] }[];
+  /** `points` of all points of the map; the share is the metric's, null where the class is none of its. */
+  classes: { label: string; color: number[]; points: number; share: number | null }[];
+}
+/** Some of the values of that many points: those of evenly spaced ranks, the lowest and the highest among them. */
+export interface Ranked {
+  points: number;
+  values: number[];
 }
 export interface ScalarLayer {
   kind: 'scalar';
@@ -86,6 +100,7 @@ export interface ScalarLayer {
   color_map: string;
   range: [number, number];
   unit: string;
+  ranked: Ranked;
 }
 export type Layer = { id: string; title: string; map: string } & (ColorLayer | ClassLayer | ScalarLayer);
 

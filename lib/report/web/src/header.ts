@@ -25,7 +25,7 @@ function inputBlock(role: string, input: InputRecord): HTMLElement {
     element(
       'p',
       { class: 'path' },
-      input.path,
+      baseName(input.path) === input.path ? undefined : input.path,
       element('span', { class: 'hash' }, 'SHA-256 ', element('code', { title: input.sha256 }, input.sha256.slice(0, 12))),
     ),
   );

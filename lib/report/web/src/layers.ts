@@ -1,6 +1,6 @@
 // Colors of the points of a layer.
 import { colorTable, noValueColor } from './color_maps';
-import type { ClassLayer, Layer, ScalarLayer } from './contract';
+import type { ClassLayer, Layer, Ranked, ScalarLayer } from './contract';
 import { fieldValue, type PointMap } from './point_map';
 
 /** What a user may change about a scalar layer. */
@@ -50,22 +50,22 @@ export function paint(map: PointMap, layer: Layer, style: ScalarStyle | undefine
   else paintColors(map, rgba);
 }
 
-/** Share of the points in each class. */
-export function classShares(map: PointMap, layer: ClassLayer): number[] {
-  const counts = layer.classes.map(() => 0);
-  for (const value of map.values.get(layer.field) ?? []) if (value < counts.length) ++counts[value];
-  return counts.map((count) => count / map.text.points);
+/** Number of all points of the map whose value is below x, or not above it. */
+function countUpTo({ points, values }: Ranked, x: number, inclusive: boolean): number {
+  const found = values.findIndex((value) => (inclusive ? value > x : value >= x));
+  const next = found < 0 ? values.length : found;
+  if (next === 0) return 0;
+  if (next === values.length) return points;
+  // Between two listed ranks values are taken to rise evenly.
+  const rank = (i: number) => Math.floor((i * (points - 1)) / (values.length - 1));
+  const share = (x - values[next - 1]) / (values[next] - values[next - 1]);
+  const at = rank(next - 1) + share * (rank(next) - rank(next - 1));
+  return inclusive ? Math.floor(at) + 1 : Math.ceil(at);
 }
 
-/** Shares of the points below and above a range. */
-export function sharesOutside(map: PointMap, field: string, [low, high]: [number, number]): [number, number] {
-  const value = fieldValue(map, field) ?? (() => NaN);
-  let below = 0;
-  let above = 0;
-  for (let i = 0; i < map.text.points; ++i) {
-    const v = value(i);
-    if (v < low) ++below;
-    else if (v > high) ++above;
-  }
-  return [below / map.text.points, above / map.text.points];
+/** Shares of all points of the map below and above a range. */
+export function sharesOutside({ ranked }: ScalarLayer, [low, high]: [number, number]): [number, number] {
+  if (ranked.points === 0) return [0, 0];
+  const { points } = ranked;
+  return [countUpTo(ranked, low, false) / points, (points - countUpTo(ranked, high, true)) / points];
 }

@@ -2,18 +2,13 @@
 import { colorMapNames, colorTable, noValueColor } from './color_maps';
 import type { ClassLayer, Layer, ScalarLayer } from './contract';
 import { button, element, rgb } from './dom';
-import { exact, percent, short, unitText } from './format';
-import { classShares, isClasses, isScalar, type ScalarStyle, sharesOutside } from './layers';
+import { count, exact, percent, short, unitText } from './format';
+import { isClasses, isScalar, type ScalarStyle, sharesOutside } from './layers';
 import { type PointMap, pointColor } from './point_map';
-
-const stops = 32;
 
 export function gradient(colorMap: string): string {
   const table = colorTable(colorMap);
-  const colors = Array.from({ length: stops + 1 }, (_, i) => {
-    const index = Math.round((255 * i) / stops);
-    return rgb(table.subarray(3 * index));
-  });
+  const colors = Array.from({ length: 256 }, (_, i) => rgb(table.subarray(3 * i)));
   return `linear-gradient(to right, ${colors.join(', ')})`;
 }
 
@@ -23,15 +18,20 @@ export function swatch(color: ArrayLike<number>): HTMLElement {
   return made;
 }
 
-function classList(map: PointMap, layer: ClassLayer): HTMLElement {
-  const shares = classShares(map, layer);
-  const rows = layer.classes.map(({ label, color }, i) =>
+const pointsText = (points: number) => `${count(points)} ${points === 1 ? 'point' : 'points'}`;
+
+function classList(layer: ClassLayer): HTMLElement {
+  const rows = layer.classes.map(({ label, color, points, share }) =>
     element(
       'li',
       { 'data-class': label },
       swatch(color),
       element('span', {}, label),
-      element('span', { class: 'number', 'data-value': exact(shares[i]) }, percent(shares[i])),
+      element(
+        'span',
+        { class: 'number', 'data-value': exact(share ?? points), title: pointsText(points) },
+        share === null ? pointsText(points) : percent(share),
+      ),
     ),
   );
   return element('ul', { class: 'classes' }, ...rows);
@@ -77,8 +77,8 @@ function rangeFields(layer: ScalarLayer, style: ScalarStyle, changed: () => void
   );
 }
 
-function outsideText(map: PointMap, layer: ScalarLayer, range: [number, number]): string {
-  const [below, above] = sharesOutside(map, layer.field, range);
+function outsideText(layer: ScalarLayer, range: [number, number]): string {
+  const [below, above] = sharesOutside(layer, range);
   const parts = [below > 0 ? `${percent(below)} below` : '', above > 0 ? `${percent(above)} above` : ''];
   return parts.filter(Boolean).join(', ') || 'All points within the range';
 }
@@ -87,6 +87,7 @@ function colorBar(map: PointMap, layer: ScalarLayer, style: ScalarStyle): HTMLEl
   const bar = element('div', { class: 'bar' });
   bar.style.background = gradient(style.colorMap);
   const [low, high] = style.range;
+  const without = map.text.points_of_map - layer.ranked.points;
   const ends = [low, (low + high) / 2, high].map((value) =>
     element('span', { 'data-value': exact(value) }, short(value)),
   );
@@ -95,7 +96,8 @@ function colorBar(map: PointMap, layer: ScalarLayer, style: ScalarStyle): HTMLEl
     { class: 'scale' },
     bar,
     element('div', { class: 'ends' }, ...ends),
-    element('p', { class: 'note' }, [unitText(layer.unit), outsideText(map, layer, style.range)].filter(Boolean).join(' · ')),
+    element('p', { class: 'note' }, [unitText(layer.unit), outsideText(layer, style.range)].filter(Boolean).join(' · ')),
+    without > 0 ? element('p', { class: 'note' }, swatch(noValueColor), `${pointsText(without)} without a value`) : undefined,
   );
 }
 
@@ -106,7 +108,7 @@ function colorNote(map: PointMap): HTMLElement {
 
 /** The legend of a layer. `changed` is called when its style has been changed, and then a new legend is due. */
 export function legend(map: PointMap, layer: Layer, style: ScalarStyle | undefined, changed: () => void): Node[] {
-  if (isClasses(layer)) return [classList(map, layer)];
+  if (isClasses(layer)) return [classList(layer)];
   if (isScalar(layer) && style) return [colorBar(map, layer, style), rangeFields(layer, style, changed)];
   return [colorNote(map)];
 }

@@ -83,7 +83,7 @@ function layout(section: HTMLElement, parts: Parts): void {
 
 function shownText({ text }: PointMap): string {
   const share = text.points / text.points_of_map;
-  if (share >= 1) return `${count(text.points)} points`;
+  if (share >= 1) return `${count(text.points)} ${text.points === 1 ? 'point' : 'points'}`;
   return `${count(text.points)} of ${count(text.points_of_map)} points (${percent(share)})`;
 }
 
@@ -163,25 +163,22 @@ function centralBox(maps: PointMap[]): Box {
   };
 }
 
-/** Some points of all maps within the box, relative to the center of the scene: what the first view is to show. */
-function samplePoints(clouds: Cloud[], box: Box, center: Vector): number[] {
-  const wanted = 4000;
-  const sample: number[] = [];
-  for (const { positions } of clouds) {
-    const stride = 3 * Math.max(1, Math.floor(positions.length / 3 / wanted));
-    for (let i = 0; i < positions.length; i += stride) {
-      const point = positions.subarray(i, i + 3);
-      const inside = point.every((value, k) => value + center[k] >= box.min[k] && value + center[k] <= box.max[k]);
-      if (inside) sample.push(...point);
+/** The points of all maps within the box, relative to the center of the scene: what the first view is to show. */
+function pointsWithin(clouds: Cloud[], box: Box): number[] {
+  const inside: number[] = [];
+  for (const { positions, map } of clouds) {
+    for (let i = 0; i < map.text.points; ++i) {
+      const outside = map.world.some((coordinates, k) => coordinates[i] < box.min[k] || coordinates[i] > box.max[k]);
+      if (!outside) inside.push(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]);
     }
   }
-  return sample;
+  return inside;
 }
 
-function setUpView(view: View, sample: number[]): void {
+function setUpView(view: View, shown: number[]): void {
   const { scene, parts } = view;
   const look = (angles: typeof oblique) => {
-    scene.orbit = fit(angles, sample, scene.aspect());
+    scene.orbit = fit(angles, shown, scene.aspect());
     scene.request();
   };
   const keys: Record<string, () => void> = {
@@ -221,7 +218,8 @@ function turnAbout(view: View, x: number, y: number): void {
 
 function followPointSize(view: View): void {
   const { size } = view.parts;
-  const base = 1.3 * Math.max(...view.scene.clouds.map((cloud) => spacing(cloud.map)));
+  // Discs that close the gaps of a grid. A point alone has no spacing: it is a dot in a first view of about a meter.
+  const base = 1.5 * Math.max(...view.scene.clouds.map((cloud) => spacing(cloud.map))) || 0.02;
   const apply = () => {
     view.scene.diameter = base * 2 ** size.valueAsNumber;
     view.scene.request();
@@ -260,6 +258,6 @@ export function showMap(section: HTMLElement, page: Page, maps: PointMap[]): Pro
   showLayer(view, layers[0]);
   followPointSize(view);
   followPage(view);
-  setUpView(view, samplePoints(scene.clouds, box, center));
+  setUpView(view, pointsWithin(scene.clouds, box));
   return new Promise((resolve) => scene.onDraw(() => requestAnimationFrame(() => resolve())));
 }

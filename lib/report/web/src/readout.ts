@@ -34,7 +34,7 @@ function scalarRows(map: PointMap, index: number): Row[] {
   const labels: Record<string, string> = { distance: 'distance', color_distance: 'color distance' };
   return map.text.planes.flatMap(({ field, unit }) => {
     const value = labels[field] && fieldValue(map, field)?.(index);
-    if (typeof value !== 'number') return [];
+    if (typeof value !== 'number' || Number.isNaN(value)) return [];
     return [{ field, label: labels[field], value: exact(value), text: withUnit(number(value), unit ?? '') }];
   });
 }

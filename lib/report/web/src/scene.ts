@@ -70,10 +70,8 @@ export interface Scene {
 function makeCloud(map: PointMap, center: Vector, material: ShaderMaterial): Cloud {
   const count = map.text.points;
   const positions = new Float32Array(3 * count);
-  ['x', 'y', 'z'].forEach((axis, k) => {
-    const values = map.values.get(axis)!;
-    const origin = map.text.origin_m[k] - center[k];
-    for (let i = 0; i < count; ++i) positions[3 * i + k] = origin + values[i] * map.text.step_m[k];
+  map.world.forEach((coordinates, k) => {
+    for (let i = 0; i < count; ++i) positions[3 * i + k] = coordinates[i] - center[k];
   });
   const colors = new Uint8Array(4 * count);
   const geometry = new BufferGeometry();
