@@ -54,7 +54,7 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("REPORT", a.reports, "reports of cmap_eval")->required()->type_name("A.json B.json ...");
   app.add_option("--format", a.format, "text, markdown, csv, latex or html [text]")
       ->type_name("FORMAT")
-      ->check(CLI::IsMember({"text", "markdown", "csv", "latex", "html"}).description(""));
+      ->check(cmap::one_of({"text", "markdown", "csv", "latex", "html"}));
   app.add_option("--metrics", a.metrics, "groups, metric ids or symbols [all in the reports]")
       ->type_name("LIST")
       ->delimiter(',')
@@ -99,7 +99,7 @@ ExitCode run(Arguments arguments) {
   files.add(arguments.figure,
             [&](cmap::OutputFile& file) { cmap::write_comparison_figure(reports, options, arguments.figure, file); });
   files.add(arguments.output, [&](cmap::OutputFile& file) { file.write(text); });
-  if (arguments.output.empty()) cmap::print(text);
+  if (arguments.output.empty() && !cmap::is_standard_output(arguments.figure)) cmap::print(text);
   files.commit();
   return ExitCode::kDone;
 }
