@@ -204,7 +204,7 @@ cmap::ExitCode run(const CLI::App& app, const Arguments& a) {
 
 int main(int argc, char** argv) {
   CLI::App app(kDescription, "cmap_align");
-  app.footer(kExample);
+  app.footer(std::string(kExample) + cmap::kDash);
   Arguments arguments;
   add_options(app, arguments);
   return cmap::run_program(app, argc, argv, [&] { return run(app, arguments); });

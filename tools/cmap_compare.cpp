@@ -32,9 +32,8 @@ constexpr const char* kExample =
     "  cmap_compare a.json b.json --figure chart.svg --format html -o comparison.html\n"
     "  cmap_compare a.json b.json --names Ours,Truth --metrics color,AC --format latex -o table.tex\n"
     "\n"
-    "Formats: text (* best, + second best), markdown, csv (all digits, empty where there is no value), latex "
-    "(booktabs,\n"
-    "xcolor), html (one file, sortable, offline).\n"
+    "Formats: text (* best, + second best), markdown, csv (all digits, empty where there is no value), latex\n"
+    "(booktabs, graphicx, xcolor; shrunk to the column where it is wider), html (one file, sortable, offline).\n"
     "Exit codes: 0 done; 2 wrong usage, no reports, or reports that do not compare; 3 a report is missing or damaged;\n"
     "70 internal error.";
 
@@ -108,7 +107,7 @@ ExitCode run(Arguments arguments) {
 
 int main(int argc, char** argv) {
   CLI::App app(kDescription, "cmap_compare");
-  app.footer(kExample);
+  app.footer(std::string(kExample) + cmap::kDash);
   Arguments arguments;
   add_options(app, arguments);
   return cmap::run_program(app, argc, argv, [&] { return run(arguments); });

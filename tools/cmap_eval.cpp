@@ -36,7 +36,7 @@ constexpr const char* kDescription =
 
 constexpr const char* kExample =
     "Examples:\n"
-    "  cmap_eval data_samples/town/reference.ply data_samples/town/estimate.ply -o report.json --require 'LCR>=0.2'\n"
+    "  cmap_eval data_samples/town/reference.ply data_samples/town/estimate.ply -o report.json --require 'LCR>=20%'\n"
     "  cmap_eval data_samples/town/estimate.ply -o map.json --html map.html --require 'point_spacing<=0.3'\n"
     "\n"
     "Exit codes: 0 done; 1 a --require did not hold; 2 wrong usage or configuration; 3 an input is missing, malformed\n"
@@ -87,7 +87,7 @@ void add_options(CLI::App& app, Arguments& a) {
                  "where the estimate's sensor was: poses, or a capture with its scans and lio.tum, in the estimate's "
                  "frame; means --observed sensor")
       ->type_name("FILE|DIR");
-  app.add_option("--require", a.requirements, "exit 1 unless it holds: LCR>=0.2, accuracy@0.1<=0.06; repeatable")
+  app.add_option("--require", a.requirements, "exit 1 unless it holds: LCR>=20%, accuracy@0.1<=0.06; repeatable")
       ->type_name("EXPR")
       ->expected(1)
       ->take_all();
@@ -297,7 +297,7 @@ ExitCode run(const Arguments& arguments, const std::string& command) {
 
 int main(int argc, char** argv) {
   CLI::App app(kDescription, "cmap_eval");
-  app.footer(kExample);
+  app.footer(std::string(kExample) + cmap::kDash);
   Arguments arguments;
   add_options(app, arguments);
   return cmap::run_program(app, argc, argv, [&] { return run(arguments, cmap::shell_command({argv, argv + argc})); });

@@ -250,7 +250,7 @@ cmap::ExitCode run(const Arguments& a) {
 
 int main(int argc, char** argv) {
   CLI::App app(kDescription, "cmap_render");
-  app.footer(kExample);
+  app.footer(std::string(kExample) + cmap::kDash);
   Arguments arguments;
   add_options(app, arguments);
   return cmap::run_program(app, argc, argv, [&] { return run(arguments); });

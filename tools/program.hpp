@@ -67,11 +67,16 @@ inline std::string about_stray_arguments(const CLI::App& app) {
   return text;
 }
 
+/// What every program's help ends with.
+inline constexpr const char* kStopCodes = "\n130 interrupted, 143 terminated: nothing half-written is left.";
+inline constexpr const char* kDash = "\nIn place of a file, - is standard input or standard output.";
+
 /// Parses the command line, calls run(), and turns what it throws into a message on stderr and an exit code.
 template <class Run>
 int run_program(CLI::App& app, int argc, char** argv, Run&& run) {
   const std::string name = app.get_name();
   end_on_signals(name.c_str());
+  app.footer(app.get_footer() + kStopCodes);
   app.set_version_flag("--version", fmt::format("{} {}", name, kVersion));
   const auto fail = [&](ExitCode code, const std::string& message) {
     const SignalsWait one_line;  // what a signal took away is no error of its own

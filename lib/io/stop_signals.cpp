@@ -25,7 +25,9 @@ struct EndingSignal {
   const char* what;
   std::string line = {};  ///< for stderr
 };
-std::array<EndingSignal, 3> ending_signals{
+using EndingSignals = std::array<EndingSignal, 3>;
+/// Never destroyed: signals come to the very end.
+EndingSignals& ending_signals = *new EndingSignals{
     {{SIGINT, "interrupted"}, {SIGTERM, "terminated"}, {SIGHUP, "its terminal was closed"}}};
 
 /// What goes when the program is stopped: a path, or a child.

@@ -157,10 +157,9 @@ TEST(OutputFile, AReaderMayCloseItsPipe) {
   const fs::path pipe = folder / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   const auto before = std::signal(SIGPIPE, SIG_IGN);
-  std::thread reader([&] { std::ifstream(pipe).get(); });
+  std::thread reader([&] { const std::ifstream closed_at_once(pipe); });
   {
     OutputFile file(pipe);
-    file.write("x");
     reader.join();
     const std::string more(1 << 20, 'x');
     EXPECT_NO_THROW(file.write(more));
