@@ -73,8 +73,10 @@ int create_beside(const fs::path& path, fs::path& temporary) {
     remove_when_stopped(temporary);
     const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
     if (descriptor >= 0) return descriptor;
+    const int error = errno;
     keep_when_stopped(temporary);
-    if (errno != EEXIST) return descriptor;
+    errno = error;
+    if (error != EEXIST) return descriptor;
   }
 }
 
@@ -102,8 +104,10 @@ bool name_it_beside(fs::path& temporary, const fs::path& path) {
       temporary = named;
       return true;
     }
+    const int error = errno;
     keep_when_stopped(named);
-    if (errno != EEXIST) return false;
+    errno = error;
+    if (error != EEXIST) return false;
   }
 }
 

@@ -186,6 +186,10 @@ class NearlyRight(CmapEval):
         self.says('camera "obliqe" is none of', *pair, "--camera", "obliqe", program=RENDER)
         self.says("did you mean oblique?", *pair, "--camera", "obliqe", program=RENDER)
 
+    def test_the_reference_passes_every_gate(self):
+        result = self.run_program(self.reference, self.reference, "--quiet", "--require", "CF>=100", "--require", "LCR>=100%")
+        self.assertEqual((result.returncode, result.stderr), (DONE, b""))
+
     def test_shares_in_percent(self):
         """Of two reference points one is recalled: 50 %."""
         report = self.evaluate(self.reference, self.estimate)

@@ -29,12 +29,6 @@ const std::vector<MetricInfo>& metric_catalog();
 /// By id or symbol, whatever the case; nullptr if there is none.
 const MetricInfo* find_metric(std::string_view id_or_symbol);
 
-/// Whether it is a share of points, which people read in percent.
-bool is_share(const MetricInfo& metric);
-
-/// Ids and symbols.
-std::vector<std::string> metric_names();
-
 /// Which metrics the options ask for, and what these are computed from.
 struct MetricSelection {
   std::set<std::string_view> ids;
