@@ -65,7 +65,7 @@ Requirement parse(const std::string& text) {
   };
   Requirement requirement{text,           find_metric(match[1].str()), std::nullopt, match[2].str(),
                           match[4].str(), number(match[5].str())};
-  if (match[7].length() > 0) {
+  if (match[6].length() > 0) {
     if (requirement.metric != nullptr && !is_share(*requirement.metric)) {
       refuse(text, fmt::format("{} is no share: a bound in % has no meaning", requirement.metric->id));
     }

@@ -80,8 +80,9 @@ class Interrupted(unittest.TestCase):
                 _, said = process.communicate(timeout=600)
                 self.wait_for_children(process)
                 with self.subTest(command=command[0], signal=kind.name):
-                    self.assertIn(process.returncode, (0, code), said)
-                    if process.returncode != 0 and kind in LINES:
+                    # While the system still loads the program, the signal ends it by itself: a shell sees the same code.
+                    self.assertIn(process.returncode, (0, code, -kind), said)
+                    if process.returncode > 0:
                         own = said.splitlines() if quiet else said.splitlines()[-1:]
                         self.assertEqual(own, [f"{command[0]}: {LINES[kind]}"])
                     stopped += process.returncode != 0

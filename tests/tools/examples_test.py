@@ -192,7 +192,7 @@ CHECKS = {
     "cmap_compare a.json b.json --names": [
         lambda run: [run.test.assertIn(word, (run.folder / "t.tex").read_text()) for word in ("Ours", "Theirs", "\\toprule", "\\cellcolor")]
     ],
-    "cmap_compare a.json b.json --figure": [holds("chart.svg"), again("--figure chart.png", code=2)],
+    "cmap_compare a.json b.json --figure": [holds("chart.svg")],
     "cmap_leaderboard benchmarks": [makes(*(f"leaderboard/tables.{e}" for e in ("md", "csv", "tex")), "leaderboard/index.html")],
 }
 BEFORE = {"cmap_recon capture -o map --resume": stopped_run}
@@ -249,14 +249,14 @@ def write_trajectories(folder):
     """A walk around the town's middle, once as odometry a few centimeters off, in every notation that is named."""
     truth, odometry, poses, csv, times = [], [], [], [], []
     for i in range(40):
-        t, angle = 100.0 + 0.1 * i, 0.1 * i
+        t, angle = 1403636580.0 + 0.1 * i, 0.1 * i
         x, y, z = 8 + 4 * np.cos(angle), 8 + 4 * np.sin(angle), 1.5 + 0.2 * np.sin(3 * angle)
         q = f"0 0 {np.sin(angle / 2):.9f} {np.cos(angle / 2):.9f}"
         truth.append(f"{t:.3f} {x:.6f} {y:.6f} {z:.6f} {q}")
         odometry.append(f"{t:.3f} {x + 0.03:.6f} {y - 0.02:.6f} {z + 0.01:.6f} {q}")
         c, s = np.cos(angle), np.sin(angle)
         poses.append(f"{c:.9f} {-s:.9f} 0 {x:.6f} {s:.9f} {c:.9f} 0 {y:.6f} 0 0 1 {z:.6f}")
-        csv.append(f"{round(t * 1e9)},{x:.6f},{y:.6f},{z:.6f},{np.cos(angle / 2):.9f},0,0,{np.sin(angle / 2):.9f}")
+        csv.append(f"{round(10 * t)}00000000,{x:.6f},{y:.6f},{z:.6f},{np.cos(angle / 2):.9f},0,0,{np.sin(angle / 2):.9f}")
         times.append(f"{t:.3f}")
     euroc = "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z []"
     files = {"truth.tum": truth, "odometry.tum": odometry, "poses.txt": poses, "truth.csv": [euroc, *csv], "times.txt": times}
@@ -283,8 +283,8 @@ def write_inputs(folder):
     write_trajectories(folder)
     for link in ("data_samples", "benchmarks"):
         (folder / link).symlink_to(SOURCE / link)
-    for name, estimate, more in (("a", "est.ply", []), ("b", "est.ply", ["--align", "gicp"]), ("c", "ref.ply", [])):
-        arguments = ["ref.ply", estimate, "--quiet", "-o", f"{name}.json", "--bootstrap", "50", *more]
+    for name, estimate in (("a", "est.ply"), ("b", "worse.ply"), ("c", "ref.ply")):
+        arguments = ["ref.ply", estimate, "--quiet", "-o", f"{name}.json", "--bootstrap", "50"]
         subprocess.run([PROGRAMS["cmap_eval"], *arguments], cwd=folder, check=True)
 
 
@@ -321,6 +321,8 @@ class Examples(unittest.TestCase):
                 if ".mp4" in example.command and not shutil.which("ffmpeg"):
                     continue
                 run = Run(self, example, self.work_folder(), self.inputs)
+                if "cmap_render" not in PROGRAMS and run.code == 2 and "this build has no" in run.stderr:
+                    continue  # a build without optional libraries says so
                 self.assertIsNotNone(run.start, "this test does not say how to see what the example does")
                 self.assertEqual(run.code, CODES.get(run.start, example.code), run.stderr)
                 for check in CHECKS[run.start]:

@@ -101,7 +101,7 @@ std::string csv_digits(std::string number) {
   const std::size_t point = number.find('.');
   const std::size_t decimals = point == number.npos ? 0 : std::min(number.find('e', point), number.size()) - point - 1;
   constexpr std::size_t kOfThousands = 3;
-  if (decimals == kOfThousands) number.insert(point + 1 + decimals, "0");
+  if (decimals == kOfThousands) number.insert(point + 1 + decimals, 1, '0');
   return number;
 }
 
