@@ -1,5 +1,7 @@
 #include "cmap/render/camera.hpp"
 
+#include <fmt/format.h>
+
 #include <fstream>
 
 #include "cmap/render/turntable.hpp"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Programs that are stopped, by a signal or by a full disk, leave nothing in the way, and nothing half-written.
 
-CMAP_MOMENTS: at how many random moments each program is stopped by each signal (default 4).
+CMAP_MOMENTS: at how many random moments each program is stopped by each signal (default 2).
 """
 
 import json
@@ -22,7 +22,7 @@ for name in ("cmap_render", "cmap_align", "cmap_compare"):
 SOURCE = Path(os.environ["CMAP_SOURCE_DIR"]).resolve()
 TOWN = SOURCE / "data_samples/town"
 REFERENCE, ESTIMATE = TOWN / "reference.ply", TOWN / "estimate.ply"
-MOMENTS = int(os.environ.get("CMAP_MOMENTS", "4"))
+MOMENTS = int(os.environ.get("CMAP_MOMENTS", "2"))
 HAS_FIGURES = "cmap_render" in PROGRAMS
 CODES = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGKILL: -9}
 LINES = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated"}

@@ -135,7 +135,7 @@ class Streams(CmapEval):
 
     @unittest.skipUnless(RENDER, "built without figures")
     def test_pictures(self):
-        arguments = [self.reference, "-o", "-", "--size", "64x48", "--quiet"]
+        arguments = [self.reference, "-o", "-", "--size", "640x480", "--quiet"]
         picture = self.run_program(*arguments, program=(RENDER,))
         self.assertEqual(picture.returncode, DONE, picture.stderr.decode())
         self.assertTrue(picture.stdout.startswith(b"\x89PNG"))
