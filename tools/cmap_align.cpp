@@ -28,11 +28,13 @@ constexpr const char* kExample =
     "error.";
 
 struct Arguments {
-  std::string source, target, method = "gicp", initial, times, output, json, fit = "sim3";
+  std::string source, target, method = "gicp", initial, times, output, json, cloud, fit = "sim3";
   double voxel_m = 0.0, max_distance_m = 0.0, tau_m = 0.0, max_gap_s = 0.15;
   bool scale = false, keep_noise = false;
   std::vector<std::uint8_t> classes;
   cmap::CommonArguments common;
+
+  std::vector<std::string> outputs() const { return {output, json, cloud}; }
 };
 
 void add_options(CLI::App& app, Arguments& a) {
@@ -41,9 +43,9 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("DST", a.target, "map or trajectory that stays")->required()->type_name("FILE");
   app.add_option("--method", a.method, "icp, plane, gicp, sim3, global, tanksandtemples, trajectory [gicp]")
       ->type_name("NAME")
-      ->check(
-          CLI::IsMember({"icp", "plane", "gicp", "sim3", "global", "tanksandtemples", "trajectory"}).description(""));
+      ->check(cmap::one_of({"icp", "plane", "gicp", "sim3", "global", "tanksandtemples", "trajectory"}));
   app.add_option("-o,--output", a.output, "transform to write: 4x4 as text")->type_name("FILE");
+  app.add_option("--output-cloud", a.cloud, "SRC as moved onto DST, to write")->type_name("FILE.ply");
   app.add_option("--json", a.json, "everything about the result, to write")->type_name("FILE");
   app.add_option("--initial", a.initial, "4x4 matrix T_dst_src to start from [identity]")->type_name("FILE");
   app.add_option("--voxel", a.voxel_m, "the source is thinned to this, the target to half [size of DST / 400]")
@@ -56,7 +58,7 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("--tau", a.tau_m, "threshold of tanksandtemples")->type_name("M")->check(positive);
   app.add_option("--fit", a.fit, "of trajectories: first-frame, se3, sim3 [sim3]")
       ->type_name("NAME")
-      ->check(CLI::IsMember({"first-frame", "se3", "sim3"}).description(""));
+      ->check(cmap::one_of({"first-frame", "se3", "sim3"}));
   app.add_option("--max-gap", a.max_gap_s, "poses farther apart are not interpolated between [0.15]")
       ->type_name("S")
       ->check(positive);
@@ -67,7 +69,7 @@ void add_options(CLI::App& app, Arguments& a) {
       ->type_name("N,...")
       ->delimiter(',');
   cmap::add_common_options(app, a.common, "no table and no warnings");
-  cmap::refuse_empty(app, {"--output", "--json", "--initial", "--times"});
+  cmap::refuse_empty(app, {"--output", "--output-cloud", "--json", "--initial", "--times"});
 }
 
 /// Options that the method would ignore are refused: they do not do what their giver thinks.
@@ -88,7 +90,7 @@ void refuse_unused(const CLI::App& app, const std::string& method) {
   refuse("--fit", {"trajectory"});
   refuse("--max-gap", {"trajectory"});
   refuse("--times", {"trajectory"});
-  for (const char* of_maps : {"--keep-noise", "--classes"}) {
+  for (const char* of_maps : {"--output-cloud", "--keep-noise", "--classes"}) {
     refuse(of_maps, {"icp", "plane", "gicp", "sim3", "global", "tanksandtemples"});
   }
 }
@@ -96,7 +98,8 @@ void refuse_unused(const CLI::App& app, const std::string& method) {
 struct Result {
   cmap::Alignment alignment;
   nlohmann::ordered_json json;
-  std::string scores;  ///< further lines of the table
+  std::string scores;           ///< further lines of the table
+  cmap::PointCloud moved = {};  ///< where it is to be written
 };
 
 /// What was said of the inputs comes before what the alignment says.
@@ -147,12 +150,15 @@ Result align_maps(const Arguments& a) {
   if (a.max_distance_m > 0.0) options.max_distance_m = a.max_distance_m;
   options.with_scale = a.scale;
   const auto [source, target] = cmap::read_both(a.source, a.target, {.keep_noise = a.keep_noise, .classes = a.classes});
+  Result result;
   if (a.method == "tanksandtemples") {
-    return run_tanks_and_temples(a, source.cloud, target.cloud, options.T_initial, warnings);
+    result = run_tanks_and_temples(a, source.cloud, target.cloud, options.T_initial, warnings);
+  } else {
+    result.alignment = cmap::align(source.cloud, target.cloud, cmap::align_method_from_name(a.method), options);
+    add_warnings(warnings, result.alignment);
+    result.json = cmap::alignment_json(result.alignment);
   }
-  Result result{cmap::align(source.cloud, target.cloud, cmap::align_method_from_name(a.method), options), {}, {}};
-  add_warnings(warnings, result.alignment);
-  result.json = cmap::alignment_json(result.alignment);
+  if (!a.cloud.empty()) result.moved = cmap::transformed(source.cloud, result.alignment.T_dst_src);
   return result;
 }
 
@@ -174,8 +180,11 @@ void deliver(const Arguments& a, const Result& result) {
   cmap::OutputFiles files;
   files.add(a.output, [&](cmap::OutputFile& file) { file.write(matrix); });
   files.add(a.json, [&](cmap::OutputFile& file) { file.write(result.json.dump(2) + "\n"); });
-  if (!a.common.quiet) {
+  files.add(a.cloud, [&](cmap::OutputFile& file) { cmap::write_ply(file, result.moved); });
+  if (!a.common.quiet && !cmap::any_to_standard_output(a.outputs())) {
     cmap::print(table(result) + (a.output.empty() ? "T_dst_src\n" + matrix : ""));
+  }
+  if (!a.common.quiet) {
     for (const std::string& warning : result.alignment.warnings) fmt::print(stderr, "warning: {}\n", warning);
   }
   files.commit();
@@ -184,8 +193,9 @@ void deliver(const Arguments& a, const Result& result) {
 cmap::ExitCode run(const CLI::App& app, const Arguments& a) {
   const cmap::ThreadLimit limit(a.common.threads);
   refuse_unused(app, a.method);
-  cmap::refuse_overwriting({a.source, a.target, a.initial, a.times}, {a.output, a.json});
-  for (const std::string& output : {a.output, a.json}) cmap::require_writable(output);
+  cmap::refuse_overwriting({a.source, a.target, a.initial, a.times}, a.outputs());
+  for (const std::string& output : a.outputs()) cmap::require_writable(output);
+  cmap::check_extension(a.cloud, {".ply", ".PLY"}, "the moved map is written as PLY");
   deliver(a, a.method == "trajectory" ? align_trajectories(a) : align_maps(a));
   return cmap::ExitCode::kDone;
 }
@@ -194,7 +204,7 @@ cmap::ExitCode run(const CLI::App& app, const Arguments& a) {
 
 int main(int argc, char** argv) {
   CLI::App app(kDescription, "cmap_align");
-  app.footer(kExample);
+  app.footer(std::string(kExample) + cmap::kDash);
   Arguments arguments;
   add_options(app, arguments);
   return cmap::run_program(app, argc, argv, [&] { return run(app, arguments); });

@@ -32,9 +32,8 @@ constexpr const char* kExample =
     "  cmap_compare a.json b.json --figure chart.svg --format html -o comparison.html\n"
     "  cmap_compare a.json b.json --names Ours,Truth --metrics color,AC --format latex -o table.tex\n"
     "\n"
-    "Formats: text (* best, + second best), markdown, csv (all digits, empty where there is no value), latex "
-    "(booktabs,\n"
-    "xcolor), html (one file, sortable, offline).\n"
+    "Formats: text (* best, + second best), markdown, csv (all digits, empty where there is no value), latex\n"
+    "(booktabs, graphicx, xcolor; shrunk to the column where it is wider), html (one file, sortable, offline).\n"
     "Exit codes: 0 done; 2 wrong usage, no reports, or reports that do not compare; 3 a report is missing or damaged;\n"
     "70 internal error.";
 
@@ -54,7 +53,7 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("REPORT", a.reports, "reports of cmap_eval")->required()->type_name("A.json B.json ...");
   app.add_option("--format", a.format, "text, markdown, csv, latex or html [text]")
       ->type_name("FORMAT")
-      ->check(CLI::IsMember({"text", "markdown", "csv", "latex", "html"}).description(""));
+      ->check(cmap::one_of({"text", "markdown", "csv", "latex", "html"}));
   app.add_option("--metrics", a.metrics, "groups, metric ids or symbols [all in the reports]")
       ->type_name("LIST")
       ->delimiter(',')
@@ -99,7 +98,7 @@ ExitCode run(Arguments arguments) {
   files.add(arguments.figure,
             [&](cmap::OutputFile& file) { cmap::write_comparison_figure(reports, options, arguments.figure, file); });
   files.add(arguments.output, [&](cmap::OutputFile& file) { file.write(text); });
-  if (arguments.output.empty()) cmap::print(text);
+  if (arguments.output.empty() && !cmap::is_standard_output(arguments.figure)) cmap::print(text);
   files.commit();
   return ExitCode::kDone;
 }
@@ -108,7 +107,7 @@ ExitCode run(Arguments arguments) {
 
 int main(int argc, char** argv) {
   CLI::App app(kDescription, "cmap_compare");
-  app.footer(kExample);
+  app.footer(std::string(kExample) + cmap::kDash);
   Arguments arguments;
   add_options(app, arguments);
   return cmap::run_program(app, argc, argv, [&] { return run(arguments); });

@@ -36,7 +36,7 @@ constexpr const char* kDescription =
 
 constexpr const char* kExample =
     "Examples:\n"
-    "  cmap_eval data_samples/town/reference.ply data_samples/town/estimate.ply -o report.json --require 'LCR>=0.2'\n"
+    "  cmap_eval data_samples/town/reference.ply data_samples/town/estimate.ply -o report.json --require 'LCR>=20%'\n"
     "  cmap_eval data_samples/town/estimate.ply -o map.json --html map.html --require 'point_spacing<=0.3'\n"
     "\n"
     "Exit codes: 0 done; 1 a --require did not hold; 2 wrong usage or configuration; 3 an input is missing, malformed\n"
@@ -56,18 +56,19 @@ struct Arguments {
 };
 
 void add_options(CLI::App& app, Arguments& a) {
-  app.add_option("REF", a.reference, "reference map; without EST, the map to evaluate by itself")
+  app.add_option("REF", a.reference, "reference map; without EST, the map to evaluate by itself; - is standard input")
       ->required()
       ->type_name("FILE");
   app.add_option("EST", a.estimate, "estimated map")->type_name("FILE");
-  app.add_option("-o,--output", a.output, "write the JSON report here")->type_name("FILE");
+  app.add_option("-o,--output", a.output, "write the JSON report here; - is standard output, then without the table")
+      ->type_name("FILE");
   app.add_option("--html", a.html, "page with everything: tables, curves, both maps in 3-D; implies --lcr-curve")
       ->type_name("FILE.html");
   app.add_option("--figure", a.figure, "picture of both maps, local color recall and color distance: .png, .jpg, .tif")
       ->type_name("FILE");
   app.add_option("--format", a.format, "what to print: table or json [table]")
       ->type_name("FORMAT")
-      ->check(CLI::IsMember({"table", "json"}).description(""));
+      ->check(cmap::one_of({"table", "json"}));
   app.add_option("--config", a.config, "JSON file of the options under Metrics; the command line wins")
       ->type_name("FILE");
   app.add_option("--preset", a.preset, "shipped configuration: paper, indoor, outdoor, aerial, mapeval")
@@ -86,7 +87,7 @@ void add_options(CLI::App& app, Arguments& a) {
                  "where the estimate's sensor was: poses, or a capture with its scans and lio.tum, in the estimate's "
                  "frame; means --observed sensor")
       ->type_name("FILE|DIR");
-  app.add_option("--require", a.requirements, "exit 1 unless it holds: LCR>=0.2, accuracy@0.1<=0.06; repeatable")
+  app.add_option("--require", a.requirements, "exit 1 unless it holds: LCR>=20%, accuracy@0.1<=0.06; repeatable")
       ->type_name("EXPR")
       ->expected(1)
       ->take_all();
@@ -210,21 +211,12 @@ bool check_requirements(const std::vector<cmap::Requirement>& requirements, cons
   return all_hold;
 }
 
-namespace fs = std::filesystem;
-
-/// A name without any extension is the user's business.
-void check_extension(const std::string& output, const std::vector<std::string>& right, const char* what_it_is) {
-  const std::string extension = fs::path(output).extension().string();
-  if (extension.empty() || std::ranges::count(right, extension) > 0) return;
-  throw cmap::UsageError(fmt::format("{}: {}; give it a name that ends in {}", output, what_it_is, right.front()));
-}
-
 /// Outputs that cannot be written, or not in their format, are refused before the work.
 void check_outputs(const Arguments& a) {
   for (const std::string& output : a.outputs()) cmap::require_writable(output);
-  check_extension(a.html, {".html", ".htm", ".HTML", ".HTM"}, "the page is HTML");
+  cmap::check_extension(a.html, {".html", ".htm", ".HTML", ".HTM"}, "the page is HTML");
   for (const std::string& ply : {a.estimate_errors, a.reference_errors}) {
-    check_extension(ply, {".ply", ".PLY"}, "point errors are written as PLY");
+    cmap::check_extension(ply, {".ply", ".PLY"}, "point errors are written as PLY");
   }
 }
 
@@ -235,7 +227,9 @@ void deliver(const Arguments& arguments, const Evaluated& evaluation, const nloh
   const std::string report_text = report.dump(2) + "\n";
   files.add(arguments.html, [&](cmap::OutputFile& file) { cmap::write_html_report(report, evaluation, file); });
   files.add(arguments.output, [&](cmap::OutputFile& file) { file.write(report_text); });
-  if (!arguments.common.quiet) cmap::print(arguments.format == "json" ? report_text : cmap::format_table(report));
+  if (!arguments.common.quiet && !cmap::any_to_standard_output(arguments.outputs())) {
+    cmap::print(arguments.format == "json" ? report_text : cmap::format_table(report));
+  }
   files.commit();
 }
 
@@ -306,7 +300,7 @@ ExitCode run(const Arguments& arguments, const std::string& command) {
 
 int main(int argc, char** argv) {
   CLI::App app(kDescription, "cmap_eval");
-  app.footer(kExample);
+  app.footer(std::string(kExample) + cmap::kDash);
   Arguments arguments;
   add_options(app, arguments);
   return cmap::run_program(app, argc, argv, [&] { return run(arguments, cmap::shell_command({argv, argv + argc})); });

@@ -61,10 +61,10 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("--figure", a.figure, "the sessions from above after each stage: .png, .jpg, .tif")->type_name("FILE");
   app.add_option("--registration", a.registration, "prefusion (none), normal, paper or robust [robust]")
       ->type_name("NAME")
-      ->check(CLI::IsMember({"prefusion", "normal", "paper", "robust"}).description(""));
+      ->check(cmap::one_of({"prefusion", "normal", "paper", "robust"}));
   app.add_option("--preset", a.preset, "default, or paper: the method as printed [default]")
       ->type_name("NAME")
-      ->check(CLI::IsMember({"default", "paper"}).description(""));
+      ->check(cmap::one_of({"default", "paper"}));
   app.add_option("--config", a.config, "JSON file of options, see --print-options")->type_name("FILE");
   app.add_option("--set", a.settings, "one option by its name; may be repeated")
       ->type_name("NAME=VALUE")
@@ -72,7 +72,7 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_flag("--print-options", a.print_options, "all options as JSON, and nothing else");
   app.add_option("--stop-after", a.stop_after, "prefusion, registration, posegraph or fusion [fusion]")
       ->type_name("STAGE")
-      ->check(CLI::IsMember({"prefusion", "registration", "posegraph", "fusion"}).description(""));
+      ->check(cmap::one_of({"prefusion", "registration", "posegraph", "fusion"}));
   app.add_option("--only-session", a.only_session, "reconstruct this session alone")
       ->type_name("K")
       ->check(CLI::Range(0, 1'000'000).description(""));

@@ -29,6 +29,10 @@ constexpr const char* kExample =
     "Example:\n"
     "  cmap_render data_samples/town/reference.ply data_samples/town/estimate.ply -o figure.png\n"
     "\n"
+    "A camera file is JSON: {\"position_m\": [x, y, z], \"target_m\": [x, y, z], \"up\": [0, 0, 1],\n"
+    "\"field_of_view_deg\": 35}, or \"view_height_m\" for a parallel projection; or a view that Open3D saved\n"
+    "(ViewTrajectory, PinholeCameraParameters).\n"
+    "\n"
     "Exit codes: 0 done; 2 wrong usage; 3 an input is missing, malformed or without a finite point;\n"
     "4 the inputs do not have what a layer needs; 70 internal error.";
 
@@ -53,7 +57,9 @@ void add_options(CLI::App& app, Arguments& a) {
       ->type_name("LIST")
       ->delimiter(',')
       ->expected(1, 9);
-  app.add_option("--camera", a.camera, "top, oblique, front, side, fit, or a JSON file [oblique]")->type_name("VIEW");
+  app.add_option("--camera", a.camera,
+                 "top, oblique, front, side, fit, or a file: ours or one of Open3D, see below [oblique]")
+      ->type_name("VIEW");
   app.add_flag("--orthographic", a.orthographic, "parallel projection");
   app.add_option("--size", a.size, "of the picture in pixels [1600x1000]")->type_name("WxH");
   app.add_option("--range", a.range, "ends of the color scale of heat maps, for pictures that are to be compared")
@@ -119,7 +125,8 @@ cmap::LayerOptions layer_options(const Arguments& a) {
 using CameraChoice = std::variant<cmap::Camera, cmap::View>;
 
 CameraChoice camera_choice(const Arguments& a) {
-  if (a.camera.ends_with(".json")) return cmap::read_camera(a.camera);
+  const bool is_file = a.camera == cmap::kStandardStream || a.camera.find_first_of("./") != std::string::npos;
+  if (is_file) return cmap::read_camera(a.camera);
   return cmap::view_from_name(a.camera);
 }
 
@@ -248,7 +255,7 @@ cmap::ExitCode run(const Arguments& a) {
 
 int main(int argc, char** argv) {
   CLI::App app(kDescription, "cmap_render");
-  app.footer(kExample);
+  app.footer(std::string(kExample) + cmap::kDash);
   Arguments arguments;
   add_options(app, arguments);
   return cmap::run_program(app, argc, argv, [&] { return run(arguments); });

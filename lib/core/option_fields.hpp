@@ -1,6 +1,7 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "cmap/core/error.hpp"
+#include "cmap/core/spelling.hpp"
 
 /// One description of an options struct, a template called with one of three visitors, serves reading it from JSON,
 /// writing it, and checking values that were set in code.
@@ -130,21 +132,22 @@ class FieldReader {
   void field(const char* key, Enum& value, const EnumNames<Enum>& names) {
     const Json* json = find(key);
     if (json == nullptr) return;
-    std::string known;
+    std::vector<std::string> known;
     for (const auto& [item, name] : names) {
       if (*json == name) {
         value = item;
         return;
       }
-      known += fmt::format("{}{}", known.empty() ? "" : ", ", name);
+      known.emplace_back(name);
     }
-    refuse(key, *json, "is none of " + known);
+    const std::string near = json->is_string() ? did_you_mean(json->get<std::string>(), known) : "";
+    refuse(key, *json, fmt::format("is none of {}{}", fmt::join(known, ", "), near));
   }
 
   void finish() const {
     for (const auto& [key, value] : object_.items()) {
       if (std::find(known_.begin(), known_.end(), key) == known_.end()) {
-        throw UsageError(fmt::format("{}: unknown key \"{}\"", where_, key));
+        throw UsageError(fmt::format("{}: unknown key \"{}\"{}", where_, key, did_you_mean(key, known_)));
       }
     }
   }

@@ -55,7 +55,7 @@ Json fidelity_fields(const EvaluationOptions& options, const ColorDistance& cd, 
   const double cf = color_fidelity_db(cd.value());
   if (std::isinf(cf)) {
     warnings.push_back(
-        {"color_fidelity_infinite", "every color is exact, so color fidelity is infinite and shown as null"});
+        {"color_fidelity_infinite", "every color is exact: color fidelity is infinite, which is null in JSON"});
   }
   return {{"value", json_number(cf)}, {"parameters", max_distance_parameter(options)}};
 }
@@ -155,9 +155,12 @@ Json exposure_free_fields(const Findings& f) {
   return fields;
 }
 
-Json psnr_fields(const Findings& f) {
+Json psnr_fields(const Findings& f, std::vector<Warning>& warnings) {
   const ColorPsnr psnr = color_psnr(f.pair);
   const Eigen::Vector3d db = psnr.psnr_db();
+  if (std::isinf(db.x())) {
+    warnings.push_back({"color_psnr_infinite", "luma is exact: color PSNR is infinite, which is null in JSON"});
+  }
   Json fields{{"value", json_number(db.x())},
               {"y", json_number(db.x())},
               {"cb", json_number(db.y())},
@@ -215,7 +218,7 @@ std::vector<MetricRecord> color_records(const Findings& f, std::optional<LocalCo
   records.add("delta_e", [&] { return delta_e_fields(f); });
   records.add("color_distance_by_range", [&] { return by_range_fields(f); });
   records.add("color_distance_exposure_free", [&] { return exposure_free_fields(f); });
-  records.add("color_psnr", [&] { return psnr_fields(f); });
+  records.add("color_psnr", [&] { return psnr_fields(f, warnings); });
   return records.take();
 }
 

@@ -5,11 +5,16 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 
 #include "cmap/core/error.hpp"
+#include "cmap/core/spelling.hpp"
+#include "cmap/eval/metric_names.hpp"
 
 namespace cmap {
 namespace {
+
+constexpr const char* kGroups[]{"default", "color", "color+", "geometry", "distribution", "mme", "density", "all"};
 
 bool equal_ignoring_case(std::string_view a, std::string_view b) {
   return std::ranges::equal(a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
@@ -36,6 +41,12 @@ std::vector<std::string_view> ids_of(const std::vector<const MetricInfo*>& metri
   return ids;
 }
 
+std::vector<std::string> groups_and_metrics() {
+  std::vector<std::string> names(std::begin(kGroups), std::end(kGroups));
+  std::ranges::copy(metric_names(), std::back_inserter(names));
+  return names;
+}
+
 /// The metrics of a group, or the one that is called so.
 std::vector<const MetricInfo*> metrics_named(const std::string& name) {
   std::vector<const MetricInfo*> metrics;
@@ -43,10 +54,9 @@ std::vector<const MetricInfo*> metrics_named(const std::string& name) {
     if (is_called(metric, name) || is_in_group(metric, name)) metrics.push_back(&metric);
   }
   if (metrics.empty()) {
-    throw UsageError(fmt::format(
-        "metrics: \"{}\" is unknown; groups are default, color, color+, geometry, distribution, mme, density, all;"
-        "\nmetrics are {}",
-        name, fmt::join(ids_of(metrics_named("all")), ", ")));
+    throw UsageError(fmt::format("metrics: \"{}\" is unknown{}; groups are {};\nmetrics are {}", name,
+                                 did_you_mean(name, groups_and_metrics()), fmt::join(kGroups, ", "),
+                                 fmt::join(ids_of(metrics_named("all")), ", ")));
   }
   return metrics;
 }
@@ -133,6 +143,20 @@ const MetricInfo* find_metric(std::string_view id_or_symbol) {
   const auto metric =
       std::ranges::find_if(metric_catalog(), [&](const MetricInfo& m) { return is_called(m, id_or_symbol); });
   return metric == metric_catalog().end() ? nullptr : &*metric;
+}
+
+bool is_share(const MetricInfo& metric) {
+  constexpr std::string_view kShares[]{"overlap", "local_color_recall", "fitness", "completeness", "f_score"};
+  return std::ranges::count(kShares, metric.id) > 0;
+}
+
+std::vector<std::string> metric_names() {
+  std::vector<std::string> names;
+  for (const MetricInfo& metric : metric_catalog()) {
+    names.emplace_back(metric.id);
+    if (!metric.symbol.empty()) names.emplace_back(metric.symbol);
+  }
+  return names;
 }
 
 MetricSelection select_metrics(const EvaluationOptions& options) {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cmap/core/error.hpp"
+#include "cmap/core/spelling.hpp"
 #include "cmap/eval/metric_catalog.hpp"
 #include "cmap/io/json_text.hpp"
 #include "eval/presets.hpp"
@@ -71,7 +72,9 @@ std::vector<std::string> tools(const char* name, const Json& value) {
   std::vector<std::string> list = words(name, value);
   for (const std::string& tool : list) {
     if (std::ranges::count(peer_tools(), tool) == 0) {
-      refuse(name, tool, fmt::format("is unknown; tools are {}", fmt::join(peer_tools(), ", ")).c_str());
+      refuse(name, tool,
+             fmt::format("is unknown{}; tools are {}", did_you_mean(tool, peer_tools()), fmt::join(peer_tools(), ", "))
+                 .c_str());
     }
   }
   return list;
@@ -130,12 +133,12 @@ const char* observed_name(Observed observed) {
 }
 
 std::string one_of(const char* name, const Json& value, std::initializer_list<const char*> words) {
-  std::string known;
-  for (const char* word : words) {
+  const std::vector<std::string> known(words.begin(), words.end());
+  for (const std::string& word : known) {
     if (value == word) return word;
-    known += fmt::format("{}{}", known.empty() ? "" : ", ", word);
   }
-  refuse(name, value, fmt::format("is none of {}", known).c_str());
+  const std::string near = value.is_string() ? did_you_mean(value.get<std::string>(), known) : "";
+  refuse(name, value, fmt::format("is none of {}{}", fmt::join(known, ", "), near).c_str());
 }
 
 bool flag(const char* name, const Json& value) {
@@ -204,11 +207,19 @@ Json value_from_text(const OptionSpec& spec, const std::string& text) {
   return nullptr;
 }
 
+std::vector<std::string> names_of_options() {
+  std::vector<std::string> names;
+  for (const OptionSpec& spec : evaluation_option_specs()) names.emplace_back(spec.name);
+  return names;
+}
+
 void apply(EvaluationOptions& options, const Json& config) {
   if (!config.is_object()) throw UsageError("expected a JSON object of options");
   for (const auto& [key, value] : config.items()) {
     const auto spec = std::ranges::find_if(evaluation_option_specs(), [&](const auto& s) { return key == s.name; });
-    if (spec == evaluation_option_specs().end()) throw UsageError(fmt::format("unknown key \"{}\"", key));
+    if (spec == evaluation_option_specs().end()) {
+      throw UsageError(fmt::format("unknown key \"{}\"{}", key, did_you_mean(key, names_of_options())));
+    }
     spec->set(options, value);
   }
 }
@@ -360,7 +371,8 @@ void apply_preset(EvaluationOptions& options, const std::string& name) {
   for (const Preset& preset : presets()) {
     if (preset.name == name) return apply_config(options, std::string(preset.json), "preset " + name);
   }
-  throw UsageError(fmt::format("preset: \"{}\" is unknown; presets are paper, indoor, outdoor, aerial, mapeval", name));
+  throw UsageError(fmt::format("preset: \"{}\" is unknown{}; presets are {}", name, did_you_mean(name, preset_names()),
+                               fmt::join(preset_names(), ", ")));
 }
 
 Json to_json(const EvaluationOptions& options) {

@@ -8,6 +8,8 @@
 #include <regex>
 
 #include "cmap/core/error.hpp"
+#include "cmap/core/spelling.hpp"
+#include "cmap/eval/metric_names.hpp"
 
 namespace cmap {
 namespace {
@@ -51,9 +53,9 @@ const nlohmann::ordered_json& part_of(const MetricRecord& record, const Requirem
 /// The expression alone.
 Requirement parse(const std::string& text) {
   static const std::regex kForm(
-      R"(\s*([A-Za-z_0-9]+#?)((?:\.[A-Za-z_0-9]+)*)(?:@([0-9.eE+-]+))?\s*(>=|<=|==|>|<)\s*([-+0-9.eE]+)\s*)");
+      R"(\s*([A-Za-z_0-9]+#?)((?:\.[A-Za-z_0-9]+)*)(?:@([0-9.eE+-]+))?\s*(>=|<=|==|>|<)\s*([-+0-9.eE]+)\s*(%?)\s*)");
   std::smatch match;
-  if (!std::regex_match(text, match, kForm)) refuse(text, "expected METRIC[@THRESHOLD] >= NUMBER (or <=, >, <, ==)");
+  if (!std::regex_match(text, match, kForm)) refuse(text, "expected METRIC[@THRESHOLD] >= NUMBER[%] (or <=, >, <, ==)");
   const auto number = [&](const std::string& digits) {
     char* end = nullptr;
     const double value = std::strtod(digits.c_str(), &end);
@@ -63,8 +65,16 @@ Requirement parse(const std::string& text) {
   };
   Requirement requirement{text,           find_metric(match[1].str()), std::nullopt, match[2].str(),
                           match[4].str(), number(match[5].str())};
+  if (match[6].length() > 0) {
+    if (requirement.metric != nullptr && !is_share(*requirement.metric)) {
+      refuse(text, fmt::format("{} is no share: a bound in % has no meaning", requirement.metric->id));
+    }
+    requirement.bound /= 100.0;
+  }
   if (match[3].matched) requirement.threshold_m = number(match[3].str());
-  if (requirement.metric == nullptr) refuse(text, fmt::format("unknown metric \"{}\"", match[1].str()));
+  if (requirement.metric == nullptr) {
+    refuse(text, fmt::format("unknown metric \"{}\"{}", match[1].str(), did_you_mean(match[1].str(), metric_names())));
+  }
   return requirement;
 }
 
@@ -73,10 +83,10 @@ void require_computed(const Requirement& requirement, const MetricSelection& sel
   refuse(requirement.text, fmt::format("{} is not computed; add it to --metrics", requirement.metric->id));
 }
 
-/// A fidelity of exact colors is null in the record, for JSON knows no infinity, and said in a warning.
+/// Decibels of exact colors are null in the record, for JSON knows no infinity, and said in a warning.
 bool is_infinite(const Requirement& requirement, const std::vector<Warning>& warnings) {
-  return requirement.metric->id == "color_fidelity" && (requirement.field.empty() || requirement.field == ".value") &&
-         std::ranges::count(warnings, "color_fidelity_infinite", &Warning::id) > 0;
+  return (requirement.field.empty() || requirement.field == ".value") &&
+         std::ranges::count(warnings, fmt::format("{}_infinite", requirement.metric->id), &Warning::id) > 0;
 }
 
 RequirementOutcome check(const Requirement& requirement, const std::vector<MetricRecord>& metrics,

@@ -8,12 +8,25 @@
 #include <cerrno>
 #include <cstring>
 
+#include "cmap/io/file_place.hpp"
+
 namespace cmap {
 
-ByteSource::ByteSource(const std::filesystem::path& path, bool sha256) : name_(path.string()) {
-  do {
-    file_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  } while (file_ < 0 && errno == EINTR);
+namespace {
+
+/// Standard input may be a socket, which cannot be opened by a name like /dev/stdin.
+int open_input(const std::filesystem::path& path) {
+  if (path == kStandardStream) return ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0);
+  for (;;) {
+    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file >= 0 || errno != EINTR) return file;
+  }
+}
+
+}  // namespace
+
+ByteSource::ByteSource(const std::filesystem::path& path, bool sha256)
+    : name_(name_of_input(path)), file_(open_input(path)) {
   if (file_ < 0) {
     if (errno == ENOENT) fail("no such file");
     fail("cannot be opened: {}", std::strerror(errno));
@@ -22,7 +35,7 @@ ByteSource::ByteSource(const std::filesystem::path& path, bool sha256) : name_(p
     struct stat status {};
     if (::fstat(file_, &status) != 0) fail("cannot be examined: {}", std::strerror(errno));
     if (S_ISDIR(status.st_mode)) fail("is a folder, not a file");
-    if (S_ISFIFO(status.st_mode)) {
+    if (S_ISFIFO(status.st_mode) || path == kStandardStream) {
       spool_pipe();
     } else if (S_ISREG(status.st_mode)) {
       size_ = static_cast<std::uint64_t>(status.st_size);

@@ -25,7 +25,7 @@ class ByteSource {
   /// No single record or line may be longer than this; a block is never smaller.
   static constexpr std::size_t kMaxRecordBytes = std::size_t{1} << 16;
 
-  /// Opens a regular file or a pipe. Throws InputError for anything else, and for an empty one.
+  /// Opens a regular file, a pipe, or standard input ("-"). Throws InputError for anything else, and for an empty one.
   explicit ByteSource(const std::filesystem::path& path, bool sha256 = false);
   /// Bytes in memory, which must outlive the source; `name` stands for the path in messages.
   ByteSource(std::string name, std::span<const std::byte> memory, bool sha256 = false,

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "cmap/core/error.hpp"
+#include "cmap/io/file_place.hpp"
 
 namespace cmap {
 namespace {
@@ -44,11 +45,12 @@ void read_json(const std::string& text, const std::string& source, const JsonRea
 }
 
 void read_json_file(const std::filesystem::path& path, const std::string& kind, const JsonReader& read) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path)) {
-    throw UsageError(fmt::format("{}: cannot be read as {}", path.string(), kind));
+  const std::filesystem::path place = path == kStandardStream ? "/dev/stdin" : path;
+  std::ifstream file(place, std::ios::binary);
+  if (!file || std::filesystem::is_directory(place)) {
+    throw UsageError(fmt::format("{}: cannot be read as {}", name_of_input(path), kind));
   }
-  read_json(std::string{std::istreambuf_iterator<char>(file), {}}, path.string(), read);
+  read_json(std::string{std::istreambuf_iterator<char>(file), {}}, name_of_input(path), read);
 }
 
 }  // namespace cmap

@@ -4,15 +4,17 @@
 #include <nlohmann/json.hpp>
 
 #include "cmap/core/error.hpp"
+#include "cmap/core/spelling.hpp"
 #include "cmap/io/json_text.hpp"
 #include "cmap/render/camera.hpp"
+#include "render/camera_json.hpp"
+#include "render/open3d_camera.hpp"
 
 namespace cmap {
-namespace {
 
 using Json = nlohmann::ordered_json;
 
-double number(const std::string& key, const Json& value, double above, double below) {
+double camera_number(const std::string& key, const Json& value, double above, double below) {
   if (!value.is_number()) throw UsageError(fmt::format("{}: {} is not a number", key, value.dump()));
   const double v = value.get<double>();
   if (!(v > above && v < below))
@@ -20,43 +22,63 @@ double number(const std::string& key, const Json& value, double above, double be
   return v;
 }
 
-Eigen::Vector3d vector(const std::string& key, const Json& value) {
-  if (!value.is_array() || value.size() != 3) throw UsageError(fmt::format("{}: expected [x, y, z]", key));
-  Eigen::Vector3d v;
-  for (int axis = 0; axis < 3; ++axis) {
-    v[axis] = number(key, value[static_cast<std::size_t>(axis)], -kMaxCoordinate_m, kMaxCoordinate_m);
+Eigen::VectorXd camera_numbers(const std::string& key, const Json& value, Eigen::Index n) {
+  if (!value.is_array() || value.size() != static_cast<std::size_t>(n)) {
+    throw UsageError(fmt::format("{}: expected {}", key, n == 3 ? "[x, y, z]" : fmt::format("{} numbers", n)));
   }
-  return v;
+  Eigen::VectorXd numbers(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    numbers[i] = camera_number(key, value[static_cast<std::size_t>(i)], -kMaxCoordinate_m, kMaxCoordinate_m);
+  }
+  return numbers;
 }
 
-Camera camera_from(const Json& json) {
-  if (!json.is_object()) throw UsageError("expected a JSON object");
+const Json& camera_member(const Json& object, const char* key) {
+  if (!object.is_object() || !object.contains(key)) throw UsageError(fmt::format("{} is missing", key));
+  return object.at(key);
+}
+
+namespace {
+
+[[noreturn]] void refuse_key(const std::string& key) {
+  const std::vector<std::string> known{"position_m", "target_m", "up", "field_of_view_deg", "view_height_m"};
+  throw UsageError(fmt::format(
+      "unknown key \"{}\"{}; a camera has position_m, target_m, up and field_of_view_deg or view_height_m, or is one "
+      "that Open3D saved",
+      key, did_you_mean(key, known)));
+}
+
+Camera camera_from_ours(const Json& json) {
   Camera camera;
   bool has_field_of_view = false;
   for (const auto& [key, value] : json.items()) {
     if (key == "position_m") {
-      camera.position = vector(key, value);
+      camera.position = camera_numbers(key, value, 3);
     } else if (key == "target_m") {
-      camera.target = vector(key, value);
+      camera.target = camera_numbers(key, value, 3);
     } else if (key == "up") {
-      camera.up = vector(key, value);
+      camera.up = camera_numbers(key, value, 3);
     } else if (key == "field_of_view_deg") {
-      camera.field_of_view_deg = number(key, value, 0.0, 180.0);
+      camera.field_of_view_deg = camera_number(key, value, 0.0, 180.0);
       has_field_of_view = true;
     } else if (key == "view_height_m") {
-      camera.view_height_m = number(key, value, 0.0, kMaxCoordinate_m);
+      camera.view_height_m = camera_number(key, value, 0.0, kMaxCoordinate_m);
       camera.orthographic = true;
     } else {
-      throw UsageError(fmt::format("unknown key \"{}\"", key));
+      refuse_key(key);
     }
   }
-  for (const char* key : {"position_m", "target_m"}) {
-    if (!json.contains(key)) throw UsageError(fmt::format("{} is missing", key));
-  }
+  for (const char* key : {"position_m", "target_m"}) (void)camera_member(json, key);
   if (has_field_of_view && camera.orthographic)
     throw UsageError("field_of_view_deg and view_height_m exclude each other");
+  return camera;
+}
+
+Camera camera_from(const Json& json) {
+  if (!json.is_object()) throw UsageError("expected a JSON object");
+  const Camera camera = is_open3d_camera(json) ? camera_from_open3d(json) : camera_from_ours(json);
   const Eigen::Vector3d forward = camera.target - camera.position;
-  if (!(forward.norm() > 0.0)) throw UsageError("position_m and target_m are the same");
+  if (!(forward.norm() > 0.0)) throw UsageError("the camera looks nowhere: position and target are the same");
   constexpr double kParallel = 1e-6;
   if (!(forward.normalized().cross(camera.up.normalized()).norm() > kParallel)) {
     throw UsageError("up is along the view");

@@ -10,6 +10,7 @@
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
 #include "cmap/core/round_number.hpp"
+#include "cmap/core/spelling.hpp"
 #include "cmap/metrics/color_consistency.hpp"
 #include "cmap/metrics/color_distance.hpp"
 #include "cmap/metrics/wasserstein.hpp"
@@ -222,9 +223,10 @@ const std::vector<std::string>& layer_names() {
 }
 
 void check_layer_name(std::string_view name) {
-  if (std::ranges::find(layer_names(), name) == layer_names().end()) {
-    throw UsageError(fmt::format("layer \"{}\" is unknown; layers are {}", name, fmt::join(layer_names(), ", ")));
-  }
+  const std::vector<std::string>& known = layer_names();
+  if (std::ranges::find(known, name) != known.end()) return;
+  throw UsageError(
+      fmt::format("layer \"{}\" is unknown{}; layers are {}", name, did_you_mean(name, known), fmt::join(known, ", ")));
 }
 
 std::string_view metric_of_layer(std::string_view name) {

@@ -1,11 +1,15 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "cmap/core/error.hpp"
+#include "cmap/core/spelling.hpp"
 
 namespace cmap {
 
@@ -13,12 +17,13 @@ namespace cmap {
 template <class Value, std::size_t n>
 Value value_of_name(std::string_view kind, std::string_view name,
                     const std::pair<std::string_view, Value> (&table)[n]) {
-  std::string known;
+  std::vector<std::string> known;
   for (const auto& [known_name, value] : table) {
     if (name == known_name) return value;
-    known += fmt::format("{}{}", known.empty() ? "" : ", ", known_name);
+    known.emplace_back(known_name);
   }
-  throw UsageError(fmt::format("{} \"{}\" is none of {}", kind, name, known));
+  throw UsageError(
+      fmt::format("{} \"{}\" is none of {}{}", kind, name, fmt::join(known, ", "), did_you_mean(name, known)));
 }
 
 }  // namespace cmap

@@ -7,6 +7,9 @@
 #include <numbers>
 
 #include "cmap/core/error.hpp"
+#include "cmap/io/file_place.hpp"
+#include "cmap/io/output_folder.hpp"
+#include "cmap/io/stop_signals.hpp"
 #include "render/video_file.hpp"
 
 namespace cmap {
@@ -24,47 +27,21 @@ void draw_frames(std::span<const Layer> layers, std::span<const Camera> cameras,
   }
 }
 
-/// A folder that appears under its name only when it is complete.
-class OutputFolder {
- public:
-  explicit OutputFolder(fs::path path)
-      : path_(std::move(path)), temporary_(path_.parent_path() / fmt::format(".{}.tmp", path_.filename().string())) {
-    std::error_code error;
-    if (!fs::create_directory(temporary_, error)) {
-      throw UsageError(fmt::format("{}: cannot be written: {}", path_.string(),
-                                   error ? error.message() : temporary_.string() + " is left of another run"));
-    }
-  }
-  ~OutputFolder() {
-    std::error_code ignored;
-    if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
-  }
-  OutputFolder(const OutputFolder&) = delete;
-  OutputFolder& operator=(const OutputFolder&) = delete;
-
-  fs::path operator/(const std::string& name) const { return temporary_ / name; }
-
-  void commit() {
-    fs::rename(temporary_, path_);
-    temporary_.clear();
-  }
-
- private:
-  fs::path path_, temporary_;
-};
-
 /// A trailing slash says that it is a folder.
 fs::path without_slash(const fs::path& name) { return name.has_filename() ? name : name.parent_path(); }
 
 void write_folder(const fs::path& name, const std::function<void(const FrameSink&)>& draw) {
   OutputFolder folder(name);
+  const fs::path partial = folder.partial();
+  remove_when_stopped(partial);
   draw([&](const Image& image, std::size_t i) {
-    const fs::path frame = folder / fmt::format("frame_{:04}.png", i);
+    const fs::path frame = partial / fmt::format("frame_{:04}.png", i);
     OutputFile file(frame);
     write_image(image, frame, file);
     file.commit();
   });
   folder.commit();
+  keep_when_stopped(partial);
 }
 
 void write_video(const fs::path& name, const FigureOptions& options,
@@ -91,6 +68,7 @@ std::vector<Camera> turntable_cameras(const Camera& camera, int n_frames) {
 
 void check_turntable_name(const fs::path& name) {
   const fs::path folder = without_slash(name);
+  if (name == kStandardStream) throw UsageError("-: a turntable needs a name");
   if (is_video_name(folder)) return require_video_program();
   if (folder.has_extension()) {
     throw UsageError(

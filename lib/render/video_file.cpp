@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "cmap/core/error.hpp"
+#include "cmap/io/stop_signals.hpp"
 #include "render/file_extension.hpp"
 
 extern char** environ;
@@ -91,6 +92,7 @@ VideoWriter::VideoWriter(fs::path name, const fs::path& path, int width_px, int 
     ::close(pipe_);
     fail();
   }
+  end_when_stopped(process_);
 }
 
 VideoWriter::~VideoWriter() {
@@ -98,6 +100,7 @@ VideoWriter::~VideoWriter() {
   if (process_ < 0) return;
   ::kill(process_, SIGTERM);
   ::waitpid(process_, nullptr, 0);
+  forget_child(process_);
 }
 
 void VideoWriter::add(const Image& image) {
@@ -119,6 +122,7 @@ void VideoWriter::finish() {
   pipe_ = -1;
   int status = 0;
   ::waitpid(process_, &status, 0);
+  forget_child(process_);
   process_ = -1;
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) fail();
 }

@@ -7,6 +7,7 @@
 #include <vtkUnsignedCharArray.h>
 
 #include "cmap/core/error.hpp"
+#include "cmap/io/file_place.hpp"
 #include "cmap/render/image.hpp"
 #include "render/file_extension.hpp"
 
@@ -17,7 +18,7 @@ enum class Format { kPng, kJpeg, kTiff };
 
 Format format_of(const std::filesystem::path& name) {
   const std::string extension = lower_case_extension(name);
-  if (extension == ".png") return Format::kPng;
+  if (extension == ".png" || name == kStandardStream) return Format::kPng;
   if (extension == ".jpg" || extension == ".jpeg") return Format::kJpeg;
   if (extension == ".tif" || extension == ".tiff") return Format::kTiff;
   throw UsageError(fmt::format("{}: pictures are .png, .jpg or .tif", name.string()));

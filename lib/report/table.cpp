@@ -86,13 +86,6 @@ std::string threshold_label(const Json& entry) {
   return fmt::format("{:>10}", fmt::format("<= {}", meters(entry.at("threshold_m"))));
 }
 
-/// JSON knows no infinity: a fidelity of exact colors is null there and said in a warning.
-std::string shown_value(const Json& report, const MetricInfo& info, const Json& value) {
-  const auto says_infinite = [](const Json& warning) { return warning.at("id") == "color_fidelity_infinite"; };
-  const bool is_infinite = info.id == "color_fidelity" && std::ranges::any_of(report.at("warnings"), says_infinite);
-  return is_infinite ? "infinity" : shown(info, value);
-}
-
 std::string value_rows(const Json& report, const MetricInfo& info, const Json& metric) {
   const std::string unit = shown_unit(info);
   if (metric.contains("per_threshold")) {
@@ -109,7 +102,8 @@ std::string value_rows(const Json& report, const MetricInfo& info, const Json& m
     }
     return rows;
   }
-  return row(info.title, metric, shown_value(report, info, metric.at("value")), unit, remark(info, metric));
+  const std::string value = is_infinite(report, info.id) ? "infinity" : shown(info, metric.at("value"));
+  return row(info.title, metric, value, unit, remark(info, metric));
 }
 
 /// The thresholds above the columns of the metrics that have one value for each.

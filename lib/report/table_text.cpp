@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace cmap {
@@ -10,6 +11,7 @@ using Json = nlohmann::ordered_json;
 
 std::string digits(const Json& value) {
   if (!value.is_number()) return "-";
+  if (std::isinf(value.get<double>())) return value.get<double>() > 0.0 ? "∞" : "-∞";
   // Rounded first: 999.96 has four digits before the point.
   const double v = std::stod(fmt::format("{:.3e}", value.get<double>()));
   if (v == 0.0) return "0";
@@ -25,9 +27,9 @@ std::string hundredths(const Json& value) {
   return percent > 0.0 && percent < 0.005 ? "< 0.01" : fmt::format("{:.2f}", percent);
 }
 
-bool is_share(const MetricInfo& info) {
-  return info.id == "overlap" || info.id == "local_color_recall" || info.id == "fitness" || info.id == "completeness" ||
-         info.id == "f_score";
+bool is_infinite(const Json& report, std::string_view id) {
+  const std::string says_so = fmt::format("{}_infinite", id);
+  return std::ranges::any_of(report.at("warnings"), [&](const Json& warning) { return warning.at("id") == says_so; });
 }
 
 std::string shown_unit(const MetricInfo& info) {

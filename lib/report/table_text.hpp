@@ -4,18 +4,18 @@
 #include <string>
 #include <string_view>
 
-#include "cmap/eval/metric_catalog.hpp"
+#include "cmap/eval/metric_names.hpp"
 
 namespace cmap {
 
-/// Four significant digits, as readers of tables expect; a dash for null.
+/// Four significant digits, as readers of tables expect; a dash for null, a sign for infinity.
 std::string digits(const nlohmann::ordered_json& value);
 
 /// A share in percent, without the sign; one that is not zero does not look like it.
 std::string hundredths(const nlohmann::ordered_json& value);
 
-/// Whether a metric is shown in percent.
-bool is_share(const MetricInfo& info);
+/// Whether a metric that has no value in a report is infinite: JSON knows no infinity, so that a warning says it.
+bool is_infinite(const nlohmann::ordered_json& report, std::string_view id);
 
 /// A value as its metric is shown.
 inline std::string shown(const MetricInfo& info, const nlohmann::ordered_json& value) {

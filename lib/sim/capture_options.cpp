@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "cmap/core/error.hpp"
+#include "cmap/core/spelling.hpp"
 #include "cmap/io/json_text.hpp"
 #include "sim/capture_descriptions.hpp"
 #include "sim/capture_presets.hpp"
@@ -90,7 +91,9 @@ void apply_capture_preset(CaptureOptions& options, const std::string& name) {
   for (const CapturePreset& preset : capture_presets()) {
     if (preset.name == name) return apply_capture_config(options, std::string(preset.json), "preset " + name);
   }
-  throw UsageError(fmt::format("\"{}\" is no preset; presets are {}", name, fmt::join(capture_preset_names(), ", ")));
+  const std::vector<std::string> known = capture_preset_names();
+  throw UsageError(
+      fmt::format("\"{}\" is no preset{}; presets are {}", name, did_you_mean(name, known), fmt::join(known, ", ")));
 }
 
 Json to_json(const CaptureOptions& options) {

@@ -143,7 +143,9 @@ TEST(SelectMapMetrics, NamesTheReferenceThatIsMissing) {
                   " needs a reference map, which is missing; without one there are color_consistency, "
                   "mean_map_entropy, point_spacing");
   }
-  EXPECT_THAT(test::refusal_of<UsageError>([] { map_ids_of({"lidar"}); }), HasSubstr("\"lidar\" is unknown"));
+  EXPECT_THAT(test::refusal_of<UsageError>([] { map_ids_of({"lidar"}); }), HasSubstr("\"lidar\" is unknown;"));
+  EXPECT_THAT(test::refusal_of<UsageError>([] { map_ids_of({"denisty"}); }),
+              HasSubstr("\"denisty\" is unknown; did you mean density?; groups are"));
 }
 
 TEST(SelectMapMetrics, RefusesOptionsThatNeedAReference) {

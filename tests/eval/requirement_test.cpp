@@ -63,6 +63,15 @@ TEST(Requirement, TakesBlanksAndEveryNotationOfANumber) {
   }
 }
 
+TEST(Requirement, TakesSharesInPercent) {
+  for (const char* holds : {"LCR>=25%", "LCR>=25 %", "LCR<=25%", "LCR==25%", "LCR.coverage>=50%", "LCR>=2.5e1%"})
+    EXPECT_TRUE(outcome(holds).holds) << holds;
+  for (const char* fails : {"LCR>=26%", "LCR>25%"}) EXPECT_FALSE(outcome(fails).holds) << fails;
+  EXPECT_EQ(parse_requirement("LCR>=20%", all_metrics()).bound, 0.2);
+  for (const char* text : {"accuracy@0.2<=5%", "CF>=20%", "SCS<=5%"})
+    EXPECT_THAT(refusal(text), HasSubstr("is no share: a bound in % has no meaning")) << text;
+}
+
 TEST(Requirement, SelectsOneThreshold) {
   const Requirement requirement = parse_requirement("accuracy@0.2<=0.06", all_metrics());
   EXPECT_EQ(requirement.metric->id, "accuracy");
@@ -95,6 +104,10 @@ TEST(Requirement, AnInfiniteFidelityIsBestOfAll) {
   for (const char* text : {"CF<=1e300", "CF<0", "CF==40"}) EXPECT_FALSE(holds(text)) << text;
   EXPECT_EQ(check(parse_requirement("CF<=1", all_metrics()), exact).value, INFINITY);
   EXPECT_FALSE(holds("LCR.conditional>=0")) << "other nulls fail as ever";
+  exact.metrics.push_back({find_metric("color_psnr"), nlohmann::ordered_json{{"value", nullptr}}});
+  EXPECT_FALSE(holds("PSNR>=40"));
+  exact.warnings.push_back({"color_psnr_infinite", "luma is exact"});
+  EXPECT_TRUE(holds("PSNR>=40"));
 }
 
 TEST(Requirement, OfOneMap) {
@@ -129,7 +142,11 @@ TEST(Requirement, RefusesABoundThatIsNotFinite) {
   EXPECT_THAT(refusal("chamfer<=1e999"), HasSubstr("\"1e999\" is not a number")) << "it would hold for every map";
 }
 
-TEST(Requirement, RefusesAnUnknownMetric) { EXPECT_THAT(refusal("lidar>=1"), HasSubstr("unknown metric \"lidar\"")); }
+TEST(Requirement, RefusesAnUnknownMetric) {
+  EXPECT_EQ(refusal("lidar>=1"), "require \"lidar>=1\": unknown metric \"lidar\"");
+  EXPECT_EQ(refusal("acuracy@0.2<=1"),
+            "require \"acuracy@0.2<=1\": unknown metric \"acuracy\"; did you mean accuracy?");
+}
 
 TEST(Requirement, RefusesAMetricThatIsNotComputed) {
   const auto parse = [] { parse_requirement("LCR>=0.2", options_for({"geometry"})); };

@@ -1,5 +1,7 @@
 #include "cmap/render/camera.hpp"
 
+#include <fmt/format.h>
+
 #include <fstream>
 
 #include "cmap/render/turntable.hpp"
@@ -119,6 +121,52 @@ TEST(ReadCamera, TakesAllKeys) {
   EXPECT_EQ(camera.up, Eigen::Vector3d::UnitY());
   EXPECT_TRUE(camera.orthographic);
   EXPECT_EQ(camera.view_height_m, 12.5);
+}
+
+TEST(ReadCamera, TakesTheViewThatOpen3dCopies) {
+  const auto view = [](double field_of_view_deg) {
+    return camera_in(fmt::format(R"({{"class_name": "ViewTrajectory", "interval": 29, "is_loop": false, "trajectory": [
+      {{"boundingbox_max": [10, 4, 2], "boundingbox_min": [0, 0, 0], "field_of_view": {}, "front": [0, -2, 0],
+        "lookat": [5, 2, 1], "up": [0, 0, 1], "zoom": 0.5}}], "version_major": 1, "version_minor": 0}})",
+                                 field_of_view_deg));
+  };
+  // 5 m above and below the middle of the picture: half the box's longest edge, at 5 m / tan(30 degrees).
+  const Camera perspective = view(60.0);
+  EXPECT_FALSE(perspective.orthographic);
+  EXPECT_NEAR(perspective.position.y(), 2.0 - 8.660254037844386, 1e-12);
+  EXPECT_EQ(perspective.position.x(), 5.0);
+  EXPECT_EQ(perspective.target, Eigen::Vector3d(5, 2, 1));
+  EXPECT_EQ(perspective.up, Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(perspective.field_of_view_deg, 60.0);
+  const Camera parallel = view(5.0);
+  EXPECT_TRUE(parallel.orthographic);
+  EXPECT_EQ(parallel.view_height_m, 10.0);
+}
+
+std::string pinhole(const char* extrinsic, double cx_px) {
+  return fmt::format(R"({{"class_name": "PinholeCameraParameters", "extrinsic": {}, "intrinsic": {{"width": 1600,
+      "height": 1000, "intrinsic_matrix": [500, 0, 0, 0, 500, 0, {}, 499.5, 1]}}, "version_major": 1}})",
+                     extrinsic, cx_px);
+}
+
+TEST(ReadCamera, TakesOpen3dPinholeParameters) {
+  // At (1, 2, 3), along +x, z up: right is -y and down is -z; columns after each other.
+  const Camera camera = camera_in(pinhole("[0, 0, 1, 0, -1, 0, 0, 0, 0, -1, 0, 0, 2, 3, -1, 1]", 799.5));
+  EXPECT_EQ(camera.position, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(camera.target, Eigen::Vector3d(2, 2, 3));
+  EXPECT_EQ(camera.up, Eigen::Vector3d::UnitZ());
+  EXPECT_NEAR(camera.field_of_view_deg, 90.0, 1e-12) << "500 pixels on either side at a focal length of 500";
+}
+
+TEST(ReadCamera, SaysWhatOfOpen3dItCannotUse) {
+  const auto refusal = [](const std::string& json) { return test::refusal_of<UsageError>([&] { camera_in(json); }); };
+  const char* level = "[0, 0, 1, 0, -1, 0, 0, 0, 0, -1, 0, 0, 2, 3, -1, 1]";
+  EXPECT_THAT(refusal(pinhole(level, 600)), HasSubstr("the principal point 600, 499.5 is not in the middle"));
+  EXPECT_THAT(refusal(pinhole("[1, 0, 0]", 799.5)), HasSubstr("extrinsic: expected 16 numbers"));
+  EXPECT_THAT(refusal(pinhole("[2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]", 799.5)), HasSubstr("no rotation"));
+  EXPECT_THAT(refusal(R"({"class_name": "ViewTrajectory", "trajectory": [{}, {}]})"), HasSubstr("2 views"));
+  EXPECT_THAT(refusal(R"({"class_name": "ViewTrajectory", "trajectory": [{}]})"),
+              HasSubstr("field_of_view is missing"));
 }
 
 TEST(ReadCamera, RefusesByFileAndKey) {

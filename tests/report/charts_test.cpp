@@ -45,6 +45,15 @@ TEST(Charts, NegativeBarsGoTheOtherWay) {
   EXPECT_DOUBLE_EQ(bars[1].width, 3.0 * bars[0].width);
 }
 
+TEST(Charts, AnInfiniteBarIsTheLongest) {
+  const auto bars = bars_of(draw_charts({"a", "b"}, {{"t", {INFINITY, 40.0}, {"∞", "40"}}}, {}), 2);
+  EXPECT_DOUBLE_EQ(bars[0].width, 1.25 * bars[1].width);
+  const auto alone = bars_of(draw_charts({"a"}, {{"t", {INFINITY}, {"∞"}}}, {}), 1);
+  ASSERT_EQ(alone.size(), 1u);
+  EXPECT_TRUE(std::isfinite(alone[0].width));
+  EXPECT_GT(alone[0].width, 0.0);
+}
+
 TEST(Charts, AMissingValueInterruptsItsCurve) {
   const CurveChart curve{"t", "x", {0.1, 0.2, 0.3, 0.4, 0.5}, {{1.0, 2.0, {}, 4.0, 5.0}}};
   int lines_of_report = 0;

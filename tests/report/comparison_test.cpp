@@ -298,6 +298,45 @@ TEST(FormatComparison, CsvHasAllDigitsAndNoZeros) {
             "overlap,,,1,higher,0.5,0.5,0.25,0,0,-0.25,-0.5\n");
 }
 
+/// The first is exact; the second is not, and the third has no color.
+std::string compared_with_an_exact_one(const ComparisonOptions& options, ComparisonFormat format) {
+  std::vector<SavedReport> reports = three_reports();
+  const auto fidelity = [&](std::size_t i) -> Json& { return reports[i].json["metrics"]["color_fidelity"]["value"]; };
+  fidelity(0) = nullptr;
+  reports[0].json["warnings"].push_back({{"id", "color_fidelity_infinite"}, {"message", "every color is exact"}});
+  fidelity(1) = 40.0;
+  fidelity(2) = nullptr;
+  return format_comparison(reports, options, format);
+}
+
+TEST(FormatComparison, AnInfiniteFidelityIsBest) {
+  const ComparisonOptions against_exact{{"CF"}, 0}, against_other{{"CF"}, 1};
+  EXPECT_THAT(compared_with_an_exact_one(against_exact, ComparisonFormat::kText),
+              ContainsRegex("color fidelity +CF +↑ +dB +∞\\* +40.00\\+ +-"));
+  EXPECT_THAT(compared_with_an_exact_one(against_exact, ComparisonFormat::kText),
+              ContainsRegex("color fidelity +CF +↑ +dB +-∞ +-\n"));
+  EXPECT_THAT(compared_with_an_exact_one(against_other, ComparisonFormat::kText),
+              ContainsRegex("color fidelity +CF +↑ +dB +\\+∞ +-\n"));
+  EXPECT_THAT(compared_with_an_exact_one(against_other, ComparisonFormat::kCsv),
+              HasSubstr("color_fidelity,,,dB,higher,inf,40,,inf,,,\n"));
+  EXPECT_THAT(compared_with_an_exact_one(against_exact, ComparisonFormat::kLatex), HasSubstr("$\\infty$"));
+  const std::string page = compared_with_an_exact_one(against_other, ComparisonFormat::kHtml);
+  EXPECT_THAT(page, HasSubstr("data-value=\"Infinity\"")) << "as a script reads it";
+  EXPECT_THAT(page, HasSubstr(">∞<"));
+}
+
+TEST(FormatComparison, TwoInfiniteFidelitiesAreTheSame) {
+  std::vector<SavedReport> reports = three_reports();
+  for (std::size_t i : {0, 1}) {
+    reports[i].json["metrics"]["color_fidelity"]["value"] = nullptr;
+    reports[i].json["warnings"].push_back({{"id", "color_fidelity_infinite"}, {"message", "every color is exact"}});
+  }
+  reports.pop_back();
+  const std::string table = format_comparison(reports, {{"CF"}, 0}, ComparisonFormat::kText);
+  EXPECT_THAT(table, ContainsRegex("∞\\* +∞\\*"));
+  EXPECT_THAT(table, ContainsRegex("color fidelity +CF +↑ +dB +0\n"));
+}
+
 TEST(FormatComparison, RecallStandsAboveItsCoverage) {
   const std::string table = compared({{"LCR"}, {}});
   EXPECT_LT(table.find("local color recall"), table.find("coverage (recall of any color)"));

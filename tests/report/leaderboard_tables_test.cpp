@@ -66,6 +66,19 @@ TEST(LeaderboardTables, RowsAreMethodsAndColumnsSequencesInThePapersUnits) {
   EXPECT_THAT(texts_of(board.section("overlap").computed.rows[1]), ElementsAre("75.00*", "x"));
 }
 
+TEST(LeaderboardTables, AnInfiniteFidelityIsBest) {
+  Board board;
+  Json& exact = board.pairs[0].report;
+  exact["metrics"]["color_fidelity"]["value"] = nullptr;
+  exact["warnings"].push_back({{"id", "color_fidelity_infinite"}, {"message", "every color is exact"}});
+  board.pairs[1].report["metrics"]["color_fidelity"]["value"] = 40.0;
+  const ScoreTable table = board.section("color_fidelity").computed;
+  EXPECT_THAT(texts_of(table.rows[0]), ElementsAre("∞*", ::testing::_));
+  EXPECT_THAT(texts_of(table.rows[1]), ElementsAre("40.00+", "x"));
+  EXPECT_THAT(leaderboard_csv(board.manifest, board.pairs),
+              HasSubstr("color_fidelity,,,dB,higher,S,A,computed,done,inf,best\n"));
+}
+
 TEST(LeaderboardTables, MissingMapsAreDashesInEveryTable) {
   Board board;
   for (LeaderboardPair& pair : board.pairs)

@@ -85,13 +85,14 @@ TEST(Typeset, Markdown) {
 
 TEST(Typeset, Latex) {
   EXPECT_EQ(typeset({small_table()}, TableFormat::kLatex),
-            "% needs \\usepackage{booktabs} and \\usepackage[table]{xcolor}\n"
+            "% needs \\usepackage{booktabs,graphicx} and \\usepackage[table]{xcolor}\n"
             "\\begin{table}[t]\n\\centering\n\\caption{Chamfer $\\downarrow$}\n"
+            "\\resizebox{\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi}{!}{%\n"
             "\\begin{tabular}{lrr}\n\\toprule\n"
             "  method & A & B\\_2 \\\\\n\\midrule\n"
             "  Ours \\& co & \\cellcolor{red!35}1.000 & $\\times$ \\\\\n"
             "  x\\textbar{}y & \\cellcolor{orange!35}12.00 & -- \\\\\n"
-            "\\bottomrule\n\\end{tabular}\n"
+            "\\bottomrule\n\\end{tabular}}\n"
             "\\par\\smallskip{\\footnotesize a note}\n"
             "\\end{table}\n");
 }
@@ -113,6 +114,7 @@ TEST(Escape, Latex) {
             "V-Sim(3)\\_a\\%b\\#c\\$d\\&e\\{f\\}g\\textasciitilde{}h\\textasciicircum{}i\\textbackslash{}j\\textless{}k"
             "\\textgreater{}l");
   EXPECT_EQ(escaped_latex("[a]* \"b\"|"), "{[}a{]}{*} ''b''\\textbar{}") << "nothing that the row before would take";
+  EXPECT_EQ(escaped_latex("+∞"), "+$\\infty$");
   EXPECT_EQ(escaped_latex("unit RGB^2 ↓ <= 0.2 m"), "unit RGB$^2$ $\\downarrow$ $\\leq$ 0.2 m");
 }
 
@@ -128,6 +130,15 @@ TEST(Escape, Csv) {
   EXPECT_EQ(csv_field("say \"hi\""), "\"say \"\"hi\"\"\"");
   EXPECT_EQ(csv_number(0.1), "0.1");
   EXPECT_EQ(csv_number({}), "");
+  EXPECT_EQ(csv_number(0.835), "0.8350") << "no spreadsheet reads that as 835";
+  EXPECT_EQ(csv_number(-1.25e-5), "-1.25e-05");
+  EXPECT_EQ(csv_number(-1.234e-5), "-1.2340e-05");
+  EXPECT_EQ(csv_number(12.5), "12.5");
+  EXPECT_EQ(csv_number(1234.0), "1234");
+  EXPECT_EQ(csv_number(0.8351), "0.8351");
+  EXPECT_EQ(csv_number(INFINITY), "inf");
+  EXPECT_EQ(csv_digits("0.125"), "0.1250");
+  EXPECT_EQ(csv_digits(""), "");
 }
 
 TEST(Escape, LinesStayLines) {

@@ -72,6 +72,7 @@ class Compare(CmapEval):
         self.assertRegex(table, r"metric +symbol +unit +a +b")
         self.assertRegex(table, r"Chamfer distance +CD# +↓ +m +4.375\+ +0\*")
         self.assertRegex(table, r"overlap +Overlap +↑ +% +50.00\+ +100.00\*")
+        self.assertRegex(table, r"color fidelity +CF +↑ +dB +[0-9.]+\+ +∞\*", "what is perfect is best")
         self.assertRegex(table, r"average Wasserstein distance +AWD +↓ +m +- +-\n", "null is a dash, never 0")
         self.assertIn("3 points, SHA-256", table)
 
@@ -86,8 +87,11 @@ class Compare(CmapEval):
                     expected = levels[row["at_m"]]
                 else:
                     expected = record["coverage"] if row["part"] else record["value"]
+                if name == "b" and row["metric"] == "color_fidelity":
+                    expected = float("inf")  # null in JSON: the reference against itself
                 self.assertEqual(row[name], "" if expected is None else row[name])
                 self.assertEqual(float(row[name]) if row[name] else None, expected, row)
+                self.assertNotRegex(row[name], r"\.\d{3}(e|$)", "spreadsheets read a point before three digits as thousands")
         self.assertEqual(len(rows), 4 + 1 + 4 + 4 * 5 + 2, "color, coverage, geometry, thresholds, distribution")
 
     def test_baseline(self):

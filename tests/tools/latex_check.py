@@ -33,7 +33,7 @@ def check_latex(test, text, folder):
             if row:
                 test.assertEqual(cells_of(row), len(columns), row)
     if shutil.which("pdflatex"):
-        document = "\\documentclass{article}\\usepackage[T1]{fontenc}\\usepackage{booktabs}\\usepackage[table]{xcolor}"
+        document = "\\documentclass{article}\\usepackage[T1]{fontenc}\\usepackage{booktabs,graphicx}\\usepackage[table]{xcolor}"
         (folder / "check.tex").write_text(f"{document}\\begin{{document}}{text}\\end{{document}}")
         result = subprocess.run(
             ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "check.tex"], cwd=folder, capture_output=True

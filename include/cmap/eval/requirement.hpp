@@ -7,7 +7,7 @@
 
 namespace cmap {
 
-/// A condition on a result: `LCR>=0.2`, `chamfer<=0.5`, `accuracy@0.1<=0.06`, `local_color_recall.coverage>=0.5`.
+/// A condition on a result: `LCR>=0.2`, `chamfer<=0.5`, `accuracy@0.1<=0.06`, `LCR.coverage>=50%`.
 struct Requirement {
   std::string text;  ///< as given
   const MetricInfo* metric;
@@ -24,7 +24,7 @@ Requirement parse_requirement(const std::string& text, const EvaluationOptions& 
 /// The same for one map without a reference.
 Requirement parse_map_requirement(const std::string& text, const EvaluationOptions& options);
 
-/// What a requirement found; a null value fails it, but for a color fidelity of exact colors, which is infinite.
+/// What a requirement found; a null value fails it, but for the decibels of exact colors, which are infinite.
 struct RequirementOutcome {
   bool holds;
   std::optional<double> value;

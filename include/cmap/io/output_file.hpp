@@ -9,9 +9,9 @@
 
 namespace cmap {
 
-/// A file that appears under its name only when it is complete: written under a temporary name in the same folder,
-/// renamed by commit(), removed otherwise. Every failure (no folder, no permission, full disk) throws UsageError naming
-/// the path and the reason of the system.
+/// A file that appears under its name only when it is complete, by commit(); before, and if the program is killed, it
+/// has no name, or a temporary one where the file system insists on one. "-" is standard output. A closed pipe is no
+/// error; every other failure (no folder, no permission, full disk) throws UsageError naming path and reason.
 class OutputFile {
  public:
   explicit OutputFile(std::filesystem::path path);
@@ -23,10 +23,10 @@ class OutputFile {
   void write(std::string_view text) { write(text.data(), text.size()); }
   /// Where a library that writes files only by name may write, in place of write().
   const std::filesystem::path& path_for_writer() const { return temporary_.empty() ? path_ : temporary_; }
-  /// Flushes to the system and closes, still under the temporary name: what can go wrong has, before several files
-  /// that belong together appear. Nothing can be written afterwards.
+  /// Flushes to the system and closes, still not under its name: what can go wrong has, before several files that
+  /// belong together appear. Nothing can be written afterwards.
   void finish();
-  /// Finishes, unless done, and renames. Not called: nothing is left behind.
+  /// Finishes, unless done, and gives it its name. Not called: nothing is left behind.
   void commit();
 
  private:
@@ -35,10 +35,10 @@ class OutputFile {
   std::FILE* file_ = nullptr;
 };
 
-/// Files that belong together: all of them appear, or none.
+/// Files that belong together: all of them appear, or none; signals wait for the last.
 class OutputFiles {
  public:
-  /// Writes one more to its end, still under its temporary name. An empty path is a file that was not asked for.
+  /// Writes one more to its end, still not under its name. An empty path is a file that was not asked for.
   void add(const std::filesystem::path& path, const std::function<void(OutputFile&)>& write);
   void commit();
 

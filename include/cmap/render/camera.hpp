@@ -35,7 +35,7 @@ Camera camera_for(View view, const PointBlocks& points, double aspect, bool orth
 /// picture.
 Camera turntable_camera_for(View view, const PointBlocks& points, double aspect, bool orthographic);
 
-/// A camera as JSON: position_m, target_m, up, and field_of_view_deg or view_height_m (which makes it orthographic).
+/// A camera as JSON: position_m, target_m, up, field_of_view_deg or (orthographic) view_height_m; or as Open3D saves one.
 /// Throws UsageError that names file and key for unknown keys, wrong types, and a camera that looks nowhere.
 Camera read_camera(const std::filesystem::path& path);
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <ranges>
+#include <utility>
 
 #include "cmap/core/round_number.hpp"
 #include "report/compare/score_table.hpp"
@@ -124,21 +126,31 @@ double Charts::legend(double top) {
   return y + kRow / 2.0 + kGap / 2.0;
 }
 
+/// From where to where the bars go, zero among it; an infinite one a little farther than the others.
+std::pair<double, double> span_of(const std::vector<std::optional<double>>& values) {
+  constexpr double kFarther = 1.25;
+  double low = 0.0, high = 0.0;
+  bool is_endless = false;
+  for (const double value : values | std::views::transform([](const auto& v) { return v.value_or(0.0); })) {
+    is_endless = is_endless || std::isinf(value);
+    if (!std::isfinite(value)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  return {low, is_endless ? std::max(kFarther * high, 1.0) : high};
+}
+
 void Charts::bars(const Panel& panel, const BarChart& chart) {
   constexpr double kNameShare = 0.28, kValueShare = 0.24;
   text(panel.x, panel.y + kHeadHeight / 2.0, chart.title, kTitleSize, kInk);
-  double low = 0.0, high = 0.0;
-  for (const auto& value : chart.values) {
-    low = std::min(low, value.value_or(0.0));
-    high = std::max(high, value.value_or(0.0));
-  }
+  const auto [low, high] = span_of(chart.values);
   const double left = panel.x + kNameShare * panel.width, room = (1.0 - kNameShare - kValueShare) * panel.width;
   const double scale = high > low ? room / (high - low) : 0.0;
   const double zero = left - low * scale;
   for (std::size_t i = 0; i < chart.values.size(); ++i) {
     const double y = panel.y + kHeadHeight + (static_cast<double>(i) + 0.5) * kBarHeight;
     text(left - 8.0, y, shortened(names_[i], 12), kTextSize, kMuted, Anchor::kRight);
-    const double end = zero + chart.values[i].value_or(0.0) * scale;
+    const double end = zero + std::clamp(chart.values[i].value_or(0.0), low, high) * scale;
     if (chart.values[i]) {
       report_box(std::min(zero, end), y - 0.36 * kBarHeight, std::abs(end - zero), 0.72 * kBarHeight, i);
     }

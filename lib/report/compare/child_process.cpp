@@ -32,7 +32,7 @@ enum ChildCode { kDone = 0, kFailed = 1, kWrongUsage = 2 };
 }
 
 [[noreturn]] void run_child(int pipe, ::pid_t parent, const std::function<void()>& work) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // it then removes what it was writing
   if (::getppid() != parent) ::_exit(kFailed);
   try {
     work();

@@ -43,11 +43,13 @@ ScoreTable score_table(const ComparisonScores& comparison) {
 std::optional<double> gain(const ScoreKind& kind, const std::optional<double>& value,
                            const std::optional<double>& base) {
   if (!value || !base || kind.better.empty()) return std::nullopt;
+  if (*value == *base) return 0.0;  // both infinite, too
   return kind.better == "lower" ? *base - *value : *value - *base;
 }
 
 std::optional<double> relative(const std::optional<double>& gained, const std::optional<double>& base) {
-  return gained && *base != 0.0 ? std::optional(*gained / std::abs(*base)) : std::nullopt;
+  const bool has_one = gained && std::isfinite(*gained) && std::isfinite(*base) && *base != 0.0;
+  return has_one ? std::optional(*gained / std::abs(*base)) : std::nullopt;
 }
 
 std::string signed_text(const std::string& magnitude, double value) {
@@ -120,8 +122,8 @@ std::string csv(const ComparisonScores& comparison, const std::optional<std::siz
   }
   text += "\n";
   for (const ScoreKind& kind : comparison.kinds) {
-    text +=
-        fmt::format("{},{},{},{},{}", csv_field(kind.metric), kind.part, kind.at, csv_field(kind.unit), kind.better);
+    text += fmt::format("{},{},{},{},{}", csv_field(kind.metric), kind.part, csv_digits(kind.at), csv_field(kind.unit),
+                        kind.better);
     for (const auto& scores : comparison.scores) text += fmt::format(",{}", csv_number(value_of(scores, kind)));
     for (std::size_t i = 0; baseline && i < comparison.scores.size(); ++i) {
       if (i == *baseline) continue;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cmap/core/error.hpp"
 #include "cmap/report/figure_module.hpp"
 #include "report/compare/charts.hpp"
 #include "report/compare/comparison_scores.hpp"
@@ -85,7 +86,12 @@ std::vector<CurveChart> curve_charts(const std::vector<SavedReport>& reports, co
 }  // namespace
 
 void check_figure_name(const std::filesystem::path& name) {
-  if (!is_svg(name)) FigureModule().check_name(name);
+  if (is_svg(name)) return;
+  try {
+    FigureModule().check_name(name);
+  } catch (const UsageError& error) {
+    throw UsageError(fmt::format("{}; a chart can also be .svg", error.what()));
+  }
 }
 
 void write_comparison_figure(const std::vector<SavedReport>& reports, const ComparisonOptions& options,

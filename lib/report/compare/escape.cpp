@@ -79,6 +79,7 @@ std::string escaped_latex(std::string_view text) {
                                    {"↑", "$\\uparrow$"},
                                    {"Δ", "$\\Delta$"},
                                    {"×", "$\\times$"},
+                                   {"∞", "$\\infty$"},
                                    {"[", "{[}"},
                                    {"]", "{]}"},
                                    {"*", "{*}"},
@@ -96,6 +97,16 @@ std::string csv_field(std::string_view text) {
   return fmt::format("\"{}\"", replaced(line, {{"\"", "\"\""}}));
 }
 
-std::string csv_number(const std::optional<double>& value) { return value ? fmt::format("{}", *value) : ""; }
+std::string csv_digits(std::string number) {
+  const std::size_t point = number.find('.');
+  const std::size_t decimals = point == number.npos ? 0 : std::min(number.find('e', point), number.size()) - point - 1;
+  constexpr std::size_t kOfThousands = 3;
+  if (decimals == kOfThousands) number.insert(point + 1 + decimals, 1, '0');
+  return number;
+}
+
+std::string csv_number(const std::optional<double>& value) {
+  return value ? csv_digits(fmt::format("{}", *value)) : "";
+}
 
 }  // namespace cmap

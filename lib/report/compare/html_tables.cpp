@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <openssl/sha.h>
 
+#include <cmath>
+
 #include "report/base64.hpp"
 #include "report/embedded_file.hpp"
 #include "report/table_text.hpp"
@@ -47,9 +49,13 @@ const char* look_of(const TableCell& cell) {
   return cell.value ? "value" : "value none";
 }
 
+std::string number_in_script(double value) {
+  return std::isfinite(value) ? fmt::format("{}", value) : value > 0.0 ? "Infinity" : "-Infinity";
+}
+
 std::string value_cell(const TableCell& cell) {
   std::string attributes = fmt::format("class=\"{}\"", look_of(cell));
-  if (cell.value) attributes += fmt::format(" data-value=\"{}\"", *cell.value);
+  if (cell.value) attributes += fmt::format(" data-value=\"{}\"", number_in_script(*cell.value));
   if (!cell.note.empty()) attributes += fmt::format(" title=\"{}\"", escaped_html(cell.note));
   return fmt::format("<td {}>{}</td>", attributes, escaped_html(cell.text));
 }

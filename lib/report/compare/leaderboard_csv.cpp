@@ -26,7 +26,7 @@ std::string computed_lines(const ScoreSection& section, const std::vector<Leader
   std::string text;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const TableCell& cell = section.computed.rows[i % n_methods].cells[i / n_methods];
-    text += fmt::format("{},{},{},{},{},{},{},computed,{},{},{}\n", kind.metric, kind.part, kind.at,
+    text += fmt::format("{},{},{},{},{},{},{},computed,{},{},{}\n", kind.metric, kind.part, csv_digits(kind.at),
                         csv_field(kind.unit), kind.better, csv_field(pairs[i].sequence), csv_field(pairs[i].method),
                         state_name(pairs[i], cell.value), csv_number(cell.value), rank_name(cell.mark));
   }

@@ -9,6 +9,7 @@
 #include "cmap/core/error.hpp"
 #include "cmap/core/version.hpp"
 #include "cmap/eval/protocol.hpp"
+#include "cmap/io/file_place.hpp"
 #include "cmap/io/point_cloud_file.hpp"
 #include "cmap/report/figure_module.hpp"
 #include "cmap/report/html_report.hpp"
@@ -236,9 +237,9 @@ std::vector<LeaderboardPair> Runner::evaluate_all() {
 
 /// Inputs are never overwritten.
 void refuse_inputs_below(const fs::path& output, const LeaderboardManifest& manifest, const fs::path& data_root) {
-  const fs::path folder = fs::weakly_canonical(output);
+  const fs::path folder = place_of_file(output);
   const auto refuse = [&](const std::string& path) {
-    const fs::path relative = fs::weakly_canonical(data_root / path).lexically_relative(folder);
+    const fs::path relative = place_of_file(data_root / path).lexically_relative(folder);
     if (!relative.empty() && *relative.begin() != "..") {
       throw UsageError(fmt::format("{}: holds the input {}; choose another output folder", output.string(), path));
     }

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "cmap/core/error.hpp"
+#include "cmap/io/file_place.hpp"
 #include "cmap/io/json_text.hpp"
 #include "cmap/report/comparison.hpp"
 #include "cmap/report/report.hpp"
@@ -137,13 +138,13 @@ void check_report(const Json& report, const std::string& source) {
 }
 
 SavedReport read_report(const fs::path& path) {
-  SavedReport report{path.string(), "", nullptr};
+  SavedReport report{name_of_input(path), "", nullptr};
   try {
     read_json_file(path, "a report", [&](const Json& json) { report.json = json; });
   } catch (const UsageError& error) {
     throw InputError(error.what());
   }
-  check_report(report.json, path.string());
+  check_report(report.json, report.path);
   complete_earlier_report(report.json);
   return report;
 }
@@ -158,7 +159,7 @@ void name_reports(std::vector<SavedReport>& reports, const std::vector<std::stri
   }
   std::set<fs::path> files;
   for (const SavedReport& report : reports) {
-    if (!files.insert(fs::weakly_canonical(report.path)).second) {
+    if (!files.insert(place_of_file(report.path)).second) {
       throw UsageError(fmt::format("{}: is given twice", report.path));
     }
   }

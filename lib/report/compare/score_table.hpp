@@ -56,7 +56,11 @@ std::string escaped_html(std::string_view text);
 /// A field of a CSV file: quoted where it must be.
 std::string csv_field(std::string_view text);
 
-/// An empty field for a missing value; all digits otherwise.
+/// A number's digits, never exactly three after the point: where a point separates thousands, spreadsheets read 0.835
+/// as 835.
+std::string csv_digits(std::string number);
+
+/// An empty field for a missing value; all digits otherwise. Infinity is "inf".
 std::string csv_number(const std::optional<double>& value);
 
 }  // namespace cmap

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "cmap/eval/metric_catalog.hpp"
 #include "report/table_text.hpp"
@@ -72,7 +73,7 @@ std::vector<Score> scores_of(const Json& report) {
       add_per_range(scores, kind, record.at("per_range"));
     } else {
       kind.headline = true;
-      scores.push_back({kind, number(record.at("value"))});
+      scores.push_back({kind, is_infinite(report, id) ? INFINITY : number(record.at("value"))});
     }
     if (!record.contains("coverage")) continue;
     kind.part = "coverage";

@@ -100,15 +100,18 @@ std::string latex_row(const std::vector<std::string>& cells) {
   return row + " \\\\\n";
 }
 
+/// As wide as it is, where the column or page has the room.
+constexpr const char* kShrunkToColumn = "\\resizebox{\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi}{!}{%\n";
+
 std::string latex_table(const ScoreTable& table) {
   const Lines lines = lines_of(table, escaped_latex, latex_cell);
-  std::string text =
-      fmt::format("\\begin{{table}}[t]\n\\centering\n{}\\begin{{tabular}}{{{}{}}}\n\\toprule\n",
-                  table.title.empty() ? "" : fmt::format("\\caption{{{}}}\n", escaped_latex(table.title)),
-                  std::string(table.head_columns.size(), 'l'), std::string(table.value_columns.size(), 'r'));
+  std::string text = fmt::format(
+      "\\begin{{table}}[t]\n\\centering\n{}{}\\begin{{tabular}}{{{}{}}}\n\\toprule\n",
+      table.title.empty() ? "" : fmt::format("\\caption{{{}}}\n", escaped_latex(table.title)), kShrunkToColumn,
+      std::string(table.head_columns.size(), 'l'), std::string(table.value_columns.size(), 'r'));
   text += latex_row(lines.front()) + "\\midrule\n";
   for (std::size_t i = 1; i < lines.size(); ++i) text += latex_row(lines[i]);
-  text += "\\bottomrule\n\\end{tabular}\n";
+  text += "\\bottomrule\n\\end{tabular}}\n";
   for (const std::string& note : table.notes)
     text += fmt::format("\\par\\smallskip{{\\footnotesize {}}}\n", escaped_latex(note));
   return text + "\\end{table}\n";
@@ -129,7 +132,7 @@ std::vector<std::string> notes_of(const std::vector<ScoreTable>& tables) {
 
 std::string typeset(const std::vector<ScoreTable>& tables, TableFormat format) {
   std::string text =
-      format == TableFormat::kLatex ? "% needs \\usepackage{booktabs} and \\usepackage[table]{xcolor}\n" : "";
+      format == TableFormat::kLatex ? "% needs \\usepackage{booktabs,graphicx} and \\usepackage[table]{xcolor}\n" : "";
   for (const ScoreTable& table : tables) {
     if (&table != &tables.front()) text += "\n";
     text += format == TableFormat::kText       ? text_table(table)
