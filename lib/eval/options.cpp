@@ -87,7 +87,7 @@ Singletons singletons_kind(const char* name, const Json& value) {
   refuse(name, value, "is none of zero, exclude, refuse");
 }
 
-std::vector<std::string> metric_names(const char* name, const Json& value) {
+std::vector<std::string> metric_list(const char* name, const Json& value) {
   EvaluationOptions checked;
   checked.metrics = words(name, value);
   if (checked.metrics.empty()) refuse(name, value, "names no metric");
@@ -241,7 +241,7 @@ const std::vector<OptionSpec>& evaluation_option_specs() {
   static const std::vector<OptionSpec> specs{
       CMAP_OPTION("metrics", kWords, "LIST",
                   "groups (color, color+, geometry, distribution, mme, density, all), metric ids or symbols", metrics,
-                  metric_names(n, value), o.metrics.empty() ? std::vector<std::string>{"default"} : o.metrics),
+                  metric_list(n, value), o.metrics.empty() ? std::vector<std::string>{"default"} : o.metrics),
       CMAP_OPTION("thresholds", kNumbers, "METERS,...", "of accuracy, fitness, completeness, F-score", thresholds_m,
                   thresholds(n, value), o.thresholds_m),
       CMAP_OPTION("overlap-distance", kNumber, "METERS", "of overlap, truncated Chamfer and inlier RMSE",

@@ -8,8 +8,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <system_error>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -92,8 +94,14 @@ void make_folder(const fs::path& folder) {
 FolderLock::FolderLock(const fs::path& folder) {
   descriptor_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor_ < 0) fail(folder, std::strerror(errno));
-  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
-  const bool is_taken = errno == EWOULDBLOCK;
+  bool is_taken = true;
+  // The last process of a run that was killed holds the lock a moment longer.
+  constexpr int kAttempts = 20;
+  for (int i = 0; is_taken && i < kAttempts; ++i) {
+    if (i > 0) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+    is_taken = errno == EWOULDBLOCK;
+  }
   ::close(std::exchange(descriptor_, -1));
   if (is_taken) fail(folder, "another program is writing into it");
 }

@@ -91,20 +91,20 @@ bool inflate_into(std::span<const std::byte> deflated, std::span<std::byte> out)
   constexpr int kRawDeflate = -15;
   if (inflateInit2(&stream, kRawDeflate) != Z_OK) return false;
   std::size_t consumed = 0, produced = 0;
-  int state = Z_OK;
-  while (state == Z_OK && (produced < out.size() || consumed < deflated.size())) {
+  int inflate_state = Z_OK;
+  while (inflate_state == Z_OK && (produced < out.size() || consumed < deflated.size())) {
     const std::size_t in_bytes = std::min(kMostAtOnce, deflated.size() - consumed);
     const std::size_t out_bytes = std::min(kMostAtOnce, out.size() - produced);
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(deflated.data() + consumed));
     stream.avail_in = static_cast<uInt>(in_bytes);
     stream.next_out = reinterpret_cast<Bytef*>(out.data() + produced);
     stream.avail_out = static_cast<uInt>(out_bytes);
-    state = inflate(&stream, Z_NO_FLUSH);
+    inflate_state = inflate(&stream, Z_NO_FLUSH);
     consumed += in_bytes - stream.avail_in;
     produced += out_bytes - stream.avail_out;
   }
   inflateEnd(&stream);
-  return produced == out.size() && (state == Z_STREAM_END || state == Z_OK || state == Z_BUF_ERROR);
+  return produced == out.size() && (inflate_state == Z_STREAM_END || inflate_state == Z_OK || inflate_state == Z_BUF_ERROR);
 }
 
 std::uint32_t checksum(std::span<const std::byte> bytes) {

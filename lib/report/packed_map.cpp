@@ -76,9 +76,9 @@ double finest_step_m(const Box3d& core) {
 constexpr unsigned kPositionBytes = 3;
 
 /// Points are counted in steps from one corner.
-struct Grid {
+struct PositionGrid {
   /// As fine as asked for, or as three bytes reach.
-  Grid(const PointBlocks& points, std::span<const std::uint32_t> slots, double finest_m) {
+  PositionGrid(const PointBlocks& points, std::span<const std::uint32_t> slots, double finest_m) {
     Eigen::Vector3d high = -origin;
     for (std::uint32_t slot : slots) {
       origin = origin.cwiseMin(points.world(slot));
@@ -110,9 +110,9 @@ struct PageSlots {
 /// Strays have a grid of their own, so that they do not coarsen that of the map.
 void add_positions(PlaneWriter& writer, PackedMap& packed, const PointBlocks& points, const PageSlots& page) {
   const std::span<const std::uint32_t> slots(page.slots);
-  std::vector<Grid> grids;
+  std::vector<PositionGrid> grids;
   for (const auto part : {slots.first(page.n_near), slots.subspan(page.n_near)}) {
-    const Grid& grid = grids.emplace_back(points, part, finest_step_m(page.body.core));
+    const PositionGrid& grid = grids.emplace_back(points, part, finest_step_m(page.body.core));
     if (part.empty()) continue;
     packed.description["grids"].push_back({{"points", part.size()},
                                            {"origin_m", {grid.origin.x(), grid.origin.y(), grid.origin.z()}},

@@ -281,7 +281,7 @@ class Leaderboard(CmapEval):
         self.assertFalse(output.exists(), "nothing is left behind")
         file = self.outputs / "file"
         file.write_text("mine")
-        self.refused(USAGE, "cannot be used as the output folder", manifest, "--data-root", self.inputs, "-o", file)
+        self.refused(USAGE, "cannot be made", manifest, "--data-root", self.inputs, "-o", file)
         self.assertEqual(file.read_text(), "mine")
 
     def test_two_runs_do_not_write_into_one_folder(self):
@@ -289,7 +289,7 @@ class Leaderboard(CmapEval):
         output.mkdir()
         descriptor = os.open(output, os.O_RDONLY)
         fcntl.flock(descriptor, fcntl.LOCK_EX)
-        self.refused(USAGE, "another cmap_leaderboard is writing there", *self.arguments(output))
+        self.refused(USAGE, "another program is writing into it", *self.arguments(output))
         os.close(descriptor)
 
     def test_quiet(self):

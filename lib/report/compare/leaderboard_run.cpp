@@ -1,15 +1,11 @@
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
-#include <chrono>
-#include <thread>
 
 #include "cmap/core/error.hpp"
 #include "cmap/core/version.hpp"
 #include "cmap/eval/protocol.hpp"
 #include "cmap/io/file_place.hpp"
+#include "cmap/io/output_folder.hpp"
 #include "cmap/io/point_cloud_file.hpp"
 #include "cmap/report/figure_module.hpp"
 #include "cmap/report/html_report.hpp"
@@ -23,31 +19,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
-
-/// Held while a run writes into a folder: two at a time would only do the work twice.
-class FolderLock {
- public:
-  explicit FolderLock(const fs::path& folder) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    descriptor_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (descriptor_ < 0) throw UsageError(fmt::format("{}: cannot be used as the output folder", folder.string()));
-    // The last process of a run that was killed holds the lock a moment longer.
-    constexpr int kAttempts = 20;
-    for (int i = 0; i < kAttempts; ++i) {
-      if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
-      std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    }
-    ::close(descriptor_);
-    throw UsageError(fmt::format("{}: another cmap_leaderboard is writing there", folder.string()));
-  }
-  ~FolderLock() { ::close(descriptor_); }
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-
- private:
-  int descriptor_ = -1;
-};
 
 /// The command that gives the same report, from the data root.
 std::string command_for(const std::string& reference, const std::string& estimate, const EvaluationOptions& options) {
@@ -257,7 +228,8 @@ std::vector<LeaderboardPair> evaluate_leaderboard(const LeaderboardManifest& man
     throw InputError(fmt::format("{}: the data root is no folder", run.data_root.string()));
   }
   refuse_inputs_below(run.output, manifest, run.data_root);
-  const FolderLock lock(run.output);
+  make_folder(run.output);
+  const FolderLock lock(run.output);  // two at a time would only do the work twice
   return Runner(manifest, run).evaluate_all();
 }
 
