@@ -86,7 +86,7 @@ const maps = {
   'with a stray 150 m below 400 m': [...square(400), [3, 3, -150, gray]],
   'with a stray 100 km off': [...square(20), [1e5, 0, 0, gray]],
   'with 2 % of strays': [...square(20), ...Array.from({ length: 290 }, (_, i) => [i, 4 * i, -7 * i, gray])],
-  'at UTM': square(60, [452_000, 5_411_000, 250]),
+  'at UTM': square(300, [452_000, 5_411_000, 250]),
 };
 
 for (const [name, points] of Object.entries(maps)) {

@@ -257,7 +257,7 @@ async function checkAgainstLegend(id, point, color) {
   const x = Math.min(bar.width - 3, Math.max(2, Math.round(share * (bar.width - 1))));
   const wanted = colorAt(bar, x, bar.height >> 1);
   const offset = colorOffset(wanted, color);
-  assert.ok(offset <= 16, `${id}: ${value} is drawn as ${color}, in the legend it is ${wanted}`);
+  assert.ok(offset <= 8, `${id}: ${value} is drawn as ${color}, in the legend it is ${wanted}`);
 }
 
 test('Enter reads the point in the middle of the view', async () => {

@@ -91,6 +91,16 @@ TEST(LeaderboardTables, MissingMapsAreDashesInEveryTable) {
     EXPECT_THAT(text, Not(HasSubstr("0.00")));
 }
 
+TEST(LeaderboardTables, DocumentsNameFilesAndNoFolders) {
+  Board board;
+  board.pairs[3].reason = "/home/ann/maps/b.ply: truncated";
+  const LeaderboardDocuments documents = typeset_leaderboard(board.manifest, board.pairs);
+  EXPECT_THAT(documents.text, HasSubstr("x T / B: b.ply: truncated\n"));
+  for (const std::string& text : {documents.text, documents.markdown, documents.latex, documents.csv, documents.html}) {
+    EXPECT_THAT(text, Not(HasSubstr("/home")));
+  }
+}
+
 TEST(LeaderboardTables, PublishedNumbersStayAsPublished) {
   Board board;
   board.manifest.published = parse_published(Json::parse(R"({"source":"paper","metrics":{

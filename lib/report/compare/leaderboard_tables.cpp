@@ -78,8 +78,10 @@ std::string title_of(const ScoreKind& kind) {
 std::string table_id(const ScoreKind& kind, const char* of) { return fmt::format("{}-{}", of, kind.id()); }
 
 TableCell cell_of(const LeaderboardPair& pair, const std::vector<Score>& scores, const ScoreKind& kind) {
-  if (pair.state == PairState::kMissing) return {std::string(kNoValue), {}, Mark::kNone, "missing: " + pair.reason};
-  if (pair.state == PairState::kFailed) return {std::string(kFailedMark), {}, Mark::kNone, "failed: " + pair.reason};
+  if (pair.state == PairState::kMissing)
+    return {std::string(kNoValue), {}, Mark::kNone, "missing: " + with_file_names(pair.reason)};
+  if (pair.state == PairState::kFailed)
+    return {std::string(kFailedMark), {}, Mark::kNone, "failed: " + with_file_names(pair.reason)};
   const std::optional<double> value = value_of(scores, kind);
   if (!value) return {std::string(kNoValue), {}, Mark::kNone, "no value"};
   return {scaled_digits(kind, *value), value, Mark::kNone, fmt::format("{}", *value)};
