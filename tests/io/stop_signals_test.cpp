@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "cmap/io/output_file.hpp"
+#include "cmap/io/output_folder.hpp"
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {
@@ -170,6 +171,28 @@ TEST(StopSignals, EndAForkedProcessAsTheyWouldHave) {
   EXPECT_EQ(ending.said, "") << "its parent speaks";
   EXPECT_FALSE(fs::exists(of_child));
   EXPECT_TRUE(fs::exists(of_parent));
+}
+
+TEST(StopSignals, LeaveNothingOfAnUnfinishedFolder) {
+  const TempFolder folder;
+  const Ending ending = ending_of([&] {
+    const OutputFolder output(folder / "frames");
+    std::ofstream(output.subfolder("deeper") / "frame") << "half";
+    std::raise(SIGTERM);
+  });
+  EXPECT_EQ(ending.exit_code(), 143);
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(StopSignals, LeaveAFinishedFolder) {
+  const TempFolder folder;
+  const Ending ending = ending_of([&] {
+    OutputFolder output(folder / "frames");
+    output.commit();
+    std::raise(SIGTERM);
+  });
+  EXPECT_EQ(ending.exit_code(), 143);
+  EXPECT_TRUE(fs::is_directory(folder / "frames"));
 }
 
 TEST(StopSignals, LeaveNothingOfAnOutputFile) {
