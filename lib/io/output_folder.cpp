@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "cmap/core/error.hpp"
+#include "cmap/io/stop_signals.hpp"
 
 namespace cmap {
 namespace fs = std::filesystem;
@@ -130,11 +131,14 @@ OutputFolder::OutputFolder(fs::path path) {
   partial += ".partial";
   lock_ = claim(partial, path_);
   partial_ = std::move(partial);
+  remove_when_stopped(partial_);
 }
 
 OutputFolder::~OutputFolder() {
+  if (partial_.empty()) return;
   std::error_code ignored;
-  if (!partial_.empty()) fs::remove_all(partial_, ignored);
+  fs::remove_all(partial_, ignored);
+  keep_when_stopped(partial_);
 }
 
 fs::path OutputFolder::subfolder(const fs::path& name) const {
@@ -146,10 +150,12 @@ fs::path OutputFolder::subfolder(const fs::path& name) const {
 }
 
 void OutputFolder::commit() {
+  const SignalsWait until_done;
   require_free(path_);
   std::error_code error;
   fs::rename(partial_, path_, error);
   if (error) fail(path_, error.message());
+  keep_when_stopped(partial_);
   partial_.clear();
   fs::remove(path_ / kMark, error);  // last: whoever is killed before leaves a rest that is known as one
 }

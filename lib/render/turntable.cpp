@@ -9,7 +9,6 @@
 #include "cmap/core/error.hpp"
 #include "cmap/io/file_place.hpp"
 #include "cmap/io/output_folder.hpp"
-#include "cmap/io/stop_signals.hpp"
 #include "render/video_file.hpp"
 
 namespace cmap {
@@ -33,7 +32,6 @@ fs::path without_slash(const fs::path& name) { return name.has_filename() ? name
 void write_folder(const fs::path& name, const std::function<void(const FrameSink&)>& draw) {
   OutputFolder folder(name);
   const fs::path partial = folder.partial();
-  remove_when_stopped(partial);
   draw([&](const Image& image, std::size_t i) {
     const fs::path frame = partial / fmt::format("frame_{:04}.png", i);
     OutputFile file(frame);
@@ -41,7 +39,6 @@ void write_folder(const fs::path& name, const std::function<void(const FrameSink
     file.commit();
   });
   folder.commit();
-  keep_when_stopped(partial);
 }
 
 void write_video(const fs::path& name, const FigureOptions& options,

@@ -28,9 +28,9 @@ class FolderLock {
 };
 
 /// A folder that appears under its name only when it is complete: filled as `<name>.partial` beside it, renamed by
-/// commit(), removed otherwise. The name must be free. Whoever is killed leaves `<name>.partial`, which the next run
-/// replaces; one that another program is filling, and one that holds anything but such a rest, is refused. Every
-/// failure throws UsageError naming the path and the reason.
+/// commit(), removed otherwise, by a signal that ends the program, too. The name must be free. Whoever is killed leaves
+/// `<name>.partial`, which the next run replaces; one that another program is filling, and one that holds anything but
+/// such a rest, is refused. Every failure throws UsageError naming the path and the reason.
 class OutputFolder {
  public:
   explicit OutputFolder(std::filesystem::path path);
