@@ -4,6 +4,7 @@
 import csv
 import json
 import os
+import signal
 import subprocess
 import tempfile
 import time
@@ -114,18 +115,32 @@ class Simulate(unittest.TestCase):
         return subprocess.Popen([PROGRAM, *QUICK, "-o", self.folder / "capture", "--quiet"], stderr=subprocess.PIPE,
                                 text=True)
 
+    @staticmethod
+    def wait_for(path):
+        while not path.exists():
+            time.sleep(0.005)
+
     def test_a_stopped_run_is_not_in_the_way(self):
         self.simulate(*QUICK, "-o", self.folder / "alone")
-        for delay_s in (0.05, 0.2, 0.6):
+        for made in ("truth", "lidar", "predictions"):  # each run comes farther than the one before
             run = self.start()
-            time.sleep(delay_s)
+            self.wait_for(self.folder / "capture.partial" / made)
             run.kill()
             run.communicate()
             self.assertFalse((self.folder / "capture").exists())
-        self.assertTrue((self.folder / "capture.partial").exists(), "else this tests nothing")
+            self.assertTrue((self.folder / "capture.partial").exists())
         self.simulate(*QUICK, "-o", self.folder / "capture")
         self.assertEqual(contents(self.folder / "capture"), contents(self.folder / "alone"))
         self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["alone", "capture"])
+
+    def test_a_signal_takes_the_rest_with_it(self):
+        for number in (signal.SIGTERM, signal.SIGINT):
+            run = self.start()
+            self.wait_for(self.folder / "capture.partial" / "lidar")
+            run.send_signal(number)
+            run.communicate()
+            self.assertEqual(run.returncode, 128 + number)
+            self.assertEqual(list(self.folder.iterdir()), [])
 
     def test_two_at_once(self):
         runs = [self.start() for _ in range(3)]
