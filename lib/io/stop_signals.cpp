@@ -27,8 +27,8 @@ struct EndingSignal {
 };
 using EndingSignals = std::array<EndingSignal, 3>;
 /// Never destroyed: signals come to the very end.
-EndingSignals& ending_signals = *new EndingSignals{
-    {{SIGINT, "interrupted"}, {SIGTERM, "terminated"}, {SIGHUP, "its terminal was closed"}}};
+EndingSignals& ending_signals =
+    *new EndingSignals{{{SIGINT, "interrupted"}, {SIGTERM, "terminated"}, {SIGHUP, "its terminal was closed"}}};
 
 /// What goes when the program is stopped: a path, or a child.
 struct Taken {

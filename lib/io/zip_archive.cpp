@@ -104,7 +104,8 @@ bool inflate_into(std::span<const std::byte> deflated, std::span<std::byte> out)
     produced += out_bytes - stream.avail_out;
   }
   inflateEnd(&stream);
-  return produced == out.size() && (inflate_state == Z_STREAM_END || inflate_state == Z_OK || inflate_state == Z_BUF_ERROR);
+  return produced == out.size() &&
+         (inflate_state == Z_STREAM_END || inflate_state == Z_OK || inflate_state == Z_BUF_ERROR);
 }
 
 std::uint32_t checksum(std::span<const std::byte> bytes) {

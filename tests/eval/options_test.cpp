@@ -166,7 +166,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Refused{"metrics", R"("color")", R"("color" is not a list of words)"},
         Refused{"metrics", "[1]", "[1] is not a list of words"}, Refused{"metrics", "[]", "names no metric"},
-        Refused{"metrics", R"(["colour"])", R"("colour" is unknown; groups are )"},
+        Refused{"metrics", R"(["colour"])", R"("colour" is unknown; did you mean color?; groups are )"},
         Refused{"thresholds", "0.2", "0.2 is not a list of numbers"},
         Refused{"thresholds", "[]", "[] is not a list of numbers"},
         Refused{"thresholds", R"(["a"])", R"("a" is not a number)"},
@@ -187,7 +187,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"color-max-distance", "-1", "-1 must be above 0"}, Refused{"voxel", "0", "0 must be above 0"},
         Refused{"crop", "[0, 0, 0]", "is not xmin,ymin,zmin,xmax,ymax,zmax"},
         Refused{"crop", "[0, 0, 0, 1, -1, 1]", "has a maximum below its minimum"},
-        Refused{"as", R"(["cloud_compare"])", R"("cloud_compare" is unknown; tools are color-map-evaluation, clo)"},
+        Refused{"as", R"(["cloud_compare"])",
+                R"("cloud_compare" is unknown; did you mean cloudcompare?; tools are color-map-evaluation, clo)"},
         Refused{"as", R"("open3d")", "is not a list of words"},
         Refused{"index", R"("kdtree")", R"("kdtree" is neither bvh nor flann)"}));
 

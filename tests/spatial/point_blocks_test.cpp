@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "cmap/core/parallel.hpp"
-#include "spatial/clouds.hpp"
 #include "cmap/spatial/radix_sort.hpp"
+#include "spatial/clouds.hpp"
 
 namespace cmap {
 namespace {

@@ -32,10 +32,10 @@ struct SessionPredictions {
   Array<float> depth_confidence;                    ///< VGGT's are >= 1; 0 where there is no depth
   std::vector<Eigen::Isometry3d> T_camera_session;  ///< OpenCV: x right, y down, z forward; that of frame 0 is identity
   Eigen::Isometry3d T_session_file = Eigen::Isometry3d::Identity();  ///< from the frame that the file's poses are in
-  std::vector<Eigen::Matrix3d> intrinsics;          ///< upper triangular, last row 0 0 1; pixel centers at integers
-  Array<Eigen::Vector3f> world_points;              ///< session frame; empty: none
-  Array<float> world_points_confidence;             ///< 0 where there is no point; empty: no points
-  std::vector<Warning> warnings;                    ///< what was decided on the user's behalf
+  std::vector<Eigen::Matrix3d> intrinsics;  ///< upper triangular, last row 0 0 1; pixel centers at integers
+  Array<Eigen::Vector3f> world_points;      ///< session frame; empty: none
+  Array<float> world_points_confidence;     ///< 0 where there is no point; empty: no points
+  std::vector<Warning> warnings;            ///< what was decided on the user's behalf
 
   std::size_t frame_count() const { return frames.size(); }
   std::size_t pixels_per_frame() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }

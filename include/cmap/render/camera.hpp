@@ -35,8 +35,8 @@ Camera camera_for(View view, const PointBlocks& points, double aspect, bool orth
 /// picture.
 Camera turntable_camera_for(View view, const PointBlocks& points, double aspect, bool orthographic);
 
-/// A camera as JSON: position_m, target_m, up, field_of_view_deg or (orthographic) view_height_m; or as Open3D saves one.
-/// Throws UsageError that names file and key for unknown keys, wrong types, and a camera that looks nowhere.
+/// A camera as JSON: position_m, target_m, up, field_of_view_deg or (orthographic) view_height_m; or as Open3D saves
+/// one. Throws UsageError that names file and key for unknown keys, wrong types, and a camera that looks nowhere.
 Camera read_camera(const std::filesystem::path& path);
 
 /// Camera axes and scale for one picture: a world point p is at pixel (x, y) = center + focal * (right.d, down.d) / w

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-
 #include "cmap/core/error.hpp"
 #include "cmap/core/version.hpp"
 #include "cmap/eval/protocol.hpp"
