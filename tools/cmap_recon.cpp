@@ -30,11 +30,10 @@ constexpr const char* kDescription =
     "A capture of your own: docs/FROM_YOUR_OWN_DATA.md.";
 
 constexpr const char* kExample =
-    "Example:\n"
+    "Examples:\n"
     "  cmap_simulate small_town -o capture\n"
-    "  cmap_recon capture -o map --evaluate capture/truth/map.ply\n"
-    "\n"
     "  cmap_recon capture --check\n"
+    "  cmap_recon capture -o map --evaluate capture/truth/map.ply\n"
     "\n"
     "--check prints a line for each fault (what ends a run, is left out of it or contradicts another file) and each\n"
     "warning (what a run goes on with), with file, place and reason.\n"

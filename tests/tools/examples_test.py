@@ -171,6 +171,7 @@ CHECKS = {
     "cmap_simulate small_town -o capture": [makes("capture/capture.json", "capture/truth/map.ply")],
     "cmap_simulate town -o capture": [makes("capture/capture.json")],
     "cmap_simulate aerial --print-options": [makes("mine.json", "capture/capture.json")],
+    "cmap_recon capture --check": [says("^0 faults, 0 warnings: ")],
     "cmap_recon capture -o map": [makes(*(f"map/{n}" for n in ("map.ply", "trajectory.tum", "sessions.json", "report.json")))],
     "cmap_recon capture -o map --evaluate": [says("CD "), holds("stages.jpg"), makes("map/evaluation.json")],
     "cmap_recon capture -o indoor": [
