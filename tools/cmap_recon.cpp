@@ -39,9 +39,8 @@ constexpr const char* kExample =
     "warning (what a run goes on with), with file, place and reason.\n"
     "\n"
     "Exit codes: 0 done, or --check found no fault; 2 wrong usage or configuration; 3 an input is missing or\n"
-    "malformed, or --check found a fault; 4 the capture does not support a map: fewer than half of its sessions can "
-    "be\n"
-    "placed; 70 internal error.";
+    "malformed, or --check found a fault; 4 the capture does not support a map: fewer than half of its sessions can\n"
+    "be placed; 70 internal error.";
 
 struct Arguments {
   std::string capture, output, preset = "default", config, stop_after = "fusion", reference, figure;
@@ -142,9 +141,8 @@ void deliver(const Arguments& a, const cmap::Reconstruction& r, const cmap::Reco
 /// Results must not become inputs of the next run, nor replace what lies there. Other folders in the capture's are
 /// free.
 void refuse_inside_capture(const Arguments& a, const std::string& result) {
-  fs::path place = fs::weakly_canonical(result);
-  if (!place.has_filename()) place = place.parent_path();  // "name/" is "name"
-  const std::string within = place.lexically_relative(fs::weakly_canonical(a.capture)).begin()->string();
+  const fs::path place = cmap::place_of_file(result), capture = cmap::place_of_file(a.capture);
+  const std::string within = place.lexically_relative(capture).begin()->string();
   for (const char* name : {".", "images", "lidar", "predictions", "truth"}) {
     if (within != name) continue;
     throw cmap::UsageError(fmt::format("{}: lies in the capture that is read; choose another place", result));

@@ -93,8 +93,7 @@ std::vector<Eigen::Vector3d> scanner_positions(const Capture& capture, double ma
   }
   throw InputError(
       fmt::format("{}: no scan has a LiDAR-inertial pose (lio.tum) at its time: scans from {:.3f} to {:.3f} s, poses "
-                  "from {:.3f} to "
-                  "{:.3f} s, gaps of at most {:g} s",
+                  "from {:.3f} to {:.3f} s, gaps of at most {:g} s",
                   capture.folder.string(), capture.scans.front().time_s, capture.scans.back().time_s,
                   capture.lio.front().time_s, capture.lio.back().time_s, max_gap_s));
 }

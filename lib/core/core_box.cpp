@@ -28,12 +28,19 @@ double stray_reach_m(const Box3d& core) {
   return diagonal_m > 0.0 ? kStrayDiagonals * diagonal_m : std::numeric_limits<double>::infinity();
 }
 
-Eigen::Vector3d choose_origin(const Box3d& box, const std::vector<Eigen::Vector3d>& sample) {
-  if (sample.size() < kFewestForCore) return choose_origin(box);
-  const Box3d core = core_box(sample);
-  const double reach_m = stray_reach_m(core);
-  const bool strays = distance_to(core, box.min) > reach_m || distance_to(core, box.max) > reach_m;
-  return choose_origin(strays ? core : box);
+CloudCore cloud_core(const std::vector<Eigen::Vector3d>& sample) {
+  if (sample.empty()) throw std::invalid_argument("cloud_core: no points");
+  if (sample.size() >= kFewestForCore) {
+    const Box3d core = core_box(sample);
+    return {core, stray_reach_m(core)};
+  }
+  Box3d all{sample.front(), sample.front()};
+  for (const Eigen::Vector3d& x : sample) all = {all.min.cwiseMin(x), all.max.cwiseMax(x)};
+  return {all, std::numeric_limits<double>::infinity()};
+}
+
+Eigen::Vector3d choose_origin(const Box3d& box, const CloudCore& core) {
+  return choose_origin(core.is_stretched(box) ? core.box : box);
 }
 
 }  // namespace cmap

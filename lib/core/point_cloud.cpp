@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "cmap/core/core_box.hpp"
-#include "cmap/core/sampled_indices.hpp"
 
 namespace cmap {
 namespace {
@@ -90,11 +89,8 @@ PointCloud transformed(const PointCloud& cloud, const Eigen::Matrix4d& T_new_old
     box.min = box.min.cwiseMin(x);
     box.max = box.max.cwiseMax(x);
   }
-  std::vector<Eigen::Vector3d> sample;
-  for (const std::size_t i : sampled_indices(cloud.size(), kCoreSample)) {
-    sample.push_back(new_position(cloud.positions[i]));
-  }
-  moved.origin = choose_origin(box, sample);
+  const auto at = [&](std::size_t i) { return new_position(cloud.positions[i]); };
+  moved.origin = choose_origin(box, cloud_core(cloud.size(), at));
   const Eigen::Vector3d shift = new_place - moved.origin;
   moved.positions.resize(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) {

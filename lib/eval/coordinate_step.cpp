@@ -78,9 +78,8 @@ struct BinaryAxis {
 
 /// An axis speaks for such numbers where those that are coarser than the limit are multiples of their steps, as far as
 /// printing and our own rounding let one see, both even and odd ones (coordinates of a raster are multiples by chance).
-BinaryAxis binary_axis(const Axis& axis, int bits, double limit_m) {
+BinaryAxis binary_axis(const Axis& axis, double printed_m, int bits, double limit_m) {
   constexpr std::size_t kFewestRounded = 20;  // printed numbers are multiples by a chance of up to one in four each
-  const double printed_m = printed_step_m(axis);
   std::vector<double> steps;
   std::size_t n_odd = 0, n_seen = 0;
   bool exact = true;
@@ -132,10 +131,10 @@ void keep_coarser(std::optional<CoordinateStep>& coarsest, double step_m, const 
 }
 
 /// Floats are a property of all three axes: one that speaks against them outweighs the others.
-void keep_binary(std::optional<CoordinateStep>& coarsest, const std::array<Axis, 3>& axes, int bits, double limit_m,
-                 CoordinateStep::Cause cause) {
+void keep_binary(std::optional<CoordinateStep>& coarsest, const std::array<Axis, 3>& axes,
+                 const std::array<double, 3>& printed_m, int bits, double limit_m, CoordinateStep::Cause cause) {
   std::array<BinaryAxis, 3> found;
-  std::ranges::transform(axes, found.begin(), [&](const Axis& axis) { return binary_axis(axis, bits, limit_m); });
+  for (std::size_t a = 0; a < 3; ++a) found[a] = binary_axis(axes[a], printed_m[a], bits, limit_m);
   if (std::ranges::any_of(found, &BinaryAxis::against)) return;
   for (int a = 0; a < 3; ++a) keep_coarser(coarsest, found[static_cast<std::size_t>(a)].step_m, axes, a, cause);
 }
@@ -147,8 +146,9 @@ std::optional<CoordinateStep> coarse_step(const PointCloud& cloud, double limit_
   if (cloud.size() < kFewestCoordinates) return std::nullopt;
   const std::array<Axis, 3> axes = sampled_axes(cloud);
   std::optional<CoordinateStep> coarsest;
-  keep_binary(coarsest, axes, kFloat16Bits, limit_m, kFloat16);
-  keep_binary(coarsest, axes, kFloat32Bits, limit_m, kFloat32);
+  const std::array<double, 3> printed_m{printed_step_m(axes[0]), printed_step_m(axes[1]), printed_step_m(axes[2])};
+  keep_binary(coarsest, axes, printed_m, kFloat16Bits, limit_m, kFloat16);
+  keep_binary(coarsest, axes, printed_m, kFloat32Bits, limit_m, kFloat32);
   for (int a = 0; a < 3; ++a) {
     const Axis& axis = axes[static_cast<std::size_t>(a)];
     const double held_m = reached_by_share(axis.rounding_m);

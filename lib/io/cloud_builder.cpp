@@ -200,7 +200,7 @@ PointCloud CloudBuilder::finish(FileInfo& info) {
   describe(info);
   PointCloud cloud;
   const auto sample = std::visit([](const auto& positions) { return positions.sample(kCoreSample); }, positions_);
-  cloud.origin = choose_origin(box_, sample);
+  cloud.origin = choose_origin(box_, cloud_core(sample));
   cloud.positions = std::visit([&](auto& positions) { return positions.take(cloud.origin); }, positions_);
   cloud.colors = colors_.finish(source_, info);
   return cloud;

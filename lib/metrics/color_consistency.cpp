@@ -35,16 +35,11 @@ struct ColorSums {
   }
 };
 
-/// Hands every occupied voxel to use(result, key, sums); a result for each of some parts of the map.
-template <class Result, class UseVoxel>
-std::vector<Result> fold_colors(const IndexedMap& map, const VoxelFrame& frame, UseVoxel use) {
-  const auto add = [&](ColorSums& sums, std::size_t slot, const Eigen::Vector3d&, const VoxelKey&) {
+/// Adds a point's color, if it has one, to its voxel.
+auto color_adder(const IndexedMap& map) {
+  return [&map](ColorSums& sums, std::size_t slot, const Eigen::Vector3d&, const VoxelKey&) {
     if (map.has_color_at(slot)) sums.add(map.color(slot), map.index.points.offset(slot));
   };
-  const auto use_occupied = [&](Result& result, const VoxelKey& key, const ColorSums& sums) {
-    if (sums.n > 0) use(result, key, sums);
-  };
-  return fold_voxels<Result, ColorSums>(map.index.points, frame, add, use_occupied);
 }
 
 VoxelFrame frame_of(const IndexedMap& map, double voxel_m) {
@@ -59,6 +54,7 @@ struct PartSums {
   std::vector<double> traces;  ///< of voxels of at least 2 points
 
   void add(const ColorSums& voxel, std::uint64_t min_points) {
+    if (voxel.n == 0) return;  // of points without color
     ++n_occupied;
     if (voxel.n == 1) return;
     const double trace = voxel.covariance_trace();
@@ -76,14 +72,12 @@ struct PartSums {
 std::vector<VoxelColorSpread> voxel_color_spreads(const IndexedMap& map, double voxel_m, std::uint64_t min_points,
                                                   Singletons singletons) {
   const VoxelFrame frame = frame_of(map, voxel_m);
-  using Spreads = std::vector<VoxelColorSpread>;
-  const auto use = [&](Spreads& spreads, const VoxelKey& key, const ColorSums& sums) {
-    if (singletons == Singletons::kExclude && sums.n < min_points) return;
-    spreads.push_back({frame.index(key), sums.covariance_trace()});
+  const std::uint64_t fewest = singletons == Singletons::kExclude ? min_points : 1;
+  const auto finish = [&](const VoxelKey& key, const ColorSums& sums) -> std::optional<VoxelColorSpread> {
+    if (sums.n < fewest) return std::nullopt;
+    return VoxelColorSpread{frame.index(key), sums.covariance_trace()};
   };
-  Spreads all;
-  for (const Spreads& part : fold_colors<Spreads>(map, frame, use)) all.insert(all.end(), part.begin(), part.end());
-  return all;
+  return collect_voxels<ColorSums>(map.index.points, frame, color_adder(map), finish);
 }
 
 ColorConsistency color_consistency(const IndexedMap& map, double voxel_m, std::uint64_t min_points) {
@@ -91,7 +85,8 @@ ColorConsistency color_consistency(const IndexedMap& map, double voxel_m, std::u
   ColorConsistency consistency;
   std::vector<double> traces;
   double sum = 0.0, sum_of_enough = 0.0;
-  for (const PartSums& part : fold_colors<PartSums>(map, frame_of(map, voxel_m), use)) {
+  for (const PartSums& part :
+       fold_voxels<PartSums, ColorSums>(map.index.points, frame_of(map, voxel_m), color_adder(map), use)) {
     consistency.n_occupied += part.n_occupied;
     consistency.n_enough += part.n_enough;
     consistency.n_one_place += part.n_one_place;

@@ -8,7 +8,6 @@
 
 #include "cmap/core/color.hpp"
 #include "cmap/core/core_box.hpp"
-#include "cmap/core/sampled_indices.hpp"
 
 namespace cmap {
 namespace {
@@ -45,25 +44,6 @@ class PlaneWriter {
   const Array<std::uint32_t>& slots_;
 };
 
-/// Where nearly all points of a map are.
-struct Body {
-  explicit Body(const PointBlocks& points) {
-    std::vector<Eigen::Vector3d> sample;
-    for (std::size_t slot : sampled_indices(points.size, kCoreSample)) sample.push_back(points.world(slot));
-    if (sample.size() >= kFewestForCore) {
-      core = core_box(sample);
-      reach_m = stray_reach_m(core);
-    } else {
-      core = {sample.front(), sample.front()};
-      for (const Eigen::Vector3d& p : sample) core = {core.min.cwiseMin(p), core.max.cwiseMax(p)};
-    }
-  }
-  bool is_stray(const Eigen::Vector3d& p) const { return distance_to(core, p) > reach_m; }
-
-  Box3d core;
-  double reach_m = INFINITY;
-};
-
 /// A millimeter, or of small maps the power of ten below a ten thousandth of their diagonal: the page has far fewer
 /// points across a surface.
 double finest_step_m(const Box3d& core) {
@@ -96,13 +76,14 @@ struct PositionGrid {
 
 /// The points of a page, strays last.
 struct PageSlots {
-  PageSlots(const PointBlocks& points, const Array<std::uint32_t>& all) : body(points), slots(all) {
+  PageSlots(const PointBlocks& points, const Array<std::uint32_t>& all)
+      : core(cloud_core(points.size, [&](std::size_t slot) { return points.world(slot); })), slots(all) {
     const auto strays =
-        std::ranges::stable_partition(slots, [&](std::uint32_t slot) { return !body.is_stray(points.world(slot)); });
+        std::ranges::stable_partition(slots, [&](std::uint32_t slot) { return !core.is_stray(points.world(slot)); });
     n_near = slots.size() - strays.size();
   }
 
-  Body body;
+  CloudCore core;
   Array<std::uint32_t> slots;
   std::size_t n_near;
 };
@@ -112,7 +93,7 @@ void add_positions(PlaneWriter& writer, PackedMap& packed, const PointBlocks& po
   const std::span<const std::uint32_t> slots(page.slots);
   std::vector<PositionGrid> grids;
   for (const auto part : {slots.first(page.n_near), slots.subspan(page.n_near)}) {
-    const PositionGrid& grid = grids.emplace_back(points, part, finest_step_m(page.body.core));
+    const PositionGrid& grid = grids.emplace_back(points, part, finest_step_m(page.core.box));
     if (part.empty()) continue;
     packed.description["grids"].push_back({{"points", part.size()},
                                            {"origin_m", {grid.origin.x(), grid.origin.y(), grid.origin.z()}},
@@ -122,7 +103,7 @@ void add_positions(PlaneWriter& writer, PackedMap& packed, const PointBlocks& po
   for (int axis = 0; axis < 3; ++axis) {
     writer.add(names[axis], kPositionBytes, Json::object(), [&](std::uint32_t slot) {
       const Eigen::Vector3d p = points.world(slot);
-      return grids[page.body.is_stray(p) ? 1 : 0].at(p, axis);
+      return grids[page.core.is_stray(p) ? 1 : 0].at(p, axis);
     });
   }
 }
@@ -142,7 +123,7 @@ void add_error(PackedMap& packed, const char* field, const char* unit, const Poi
                ErrorAt&& error_at) {
   std::array<double, 2> most{};
   const auto most_of = [&](std::uint32_t slot) -> double& {
-    return most[page.body.is_stray(points.world(slot)) ? 1 : 0];
+    return most[page.core.is_stray(points.world(slot)) ? 1 : 0];
   };
   for (std::uint32_t slot : page.slots) most_of(slot) = std::max(most_of(slot), error_at(slot));
   constexpr std::uint32_t kNone = 65535;

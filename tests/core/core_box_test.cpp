@@ -47,7 +47,8 @@ TEST(ChooseOriginOfSample, AStrayDoesNotMoveIt) {
   std::vector<Vector3d> sample = line(50, utm);
   const auto origin_with = [&](const Vector3d& far) {
     sample.push_back(far);
-    const Vector3d origin = choose_origin({utm.cwiseMin(far), (utm + Vector3d(49, 98, -49)).cwiseMax(far)}, sample);
+    const Vector3d origin =
+        choose_origin({utm.cwiseMin(far), (utm + Vector3d(49, 98, -49)).cwiseMax(far)}, cloud_core(sample));
     sample.pop_back();
     return origin;
   };
@@ -61,7 +62,7 @@ TEST(ChooseOriginOfSample, AStrayDoesNotMoveIt) {
 }
 
 TEST(ChooseOriginOfSample, FewPointsHaveNoStrays) {
-  EXPECT_EQ(choose_origin({Vector3d::Zero(), Vector3d(1e7, 0, 0)}, line(5)),
+  EXPECT_EQ(choose_origin({Vector3d::Zero(), Vector3d(1e7, 0, 0)}, cloud_core(line(5))),
             choose_origin({Vector3d::Zero(), Vector3d(1e7, 0, 0)}));
 }
 
