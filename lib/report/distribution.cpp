@@ -43,8 +43,6 @@ DirectedDistribution binned(const Array<double>& errors, double bin_width, doubl
   return {{total.n.begin(), total.n.end() - 1}, total.n.back(), p95};
 }
 
-}  // namespace
-
 Array<double> errors_of(const NearestPairs& pairs, PairError error) {
   Array<double> errors(pairs.size());
   parallel_chunks(pairs.size(), kLoopChunk, [&](std::size_t begin, std::size_t end) {
@@ -54,6 +52,8 @@ Array<double> errors_of(const NearestPairs& pairs, PairError error) {
   return errors;
 }
 
+}  // namespace
+
 Distribution distribution_of(const MapPair& pair, PairError error) {
   constexpr std::array kShares{0.95, 0.99};
   const Array<double> estimate = errors_of(pair.estimate_to_reference(), error);
@@ -61,7 +61,8 @@ Distribution distribution_of(const MapPair& pair, PairError error) {
   const std::vector<double> of_estimate = quantiles(estimate, kShares);
   const std::vector<double> of_reference = quantiles(reference, kShares);
   const double bin_width = round_number_above(std::max(of_estimate[1], of_reference[1])) / static_cast<double>(kBins);
-  return {bin_width, binned(estimate, bin_width, of_estimate[0]), binned(reference, bin_width, of_reference[0])};
+  return {bin_width, binned(estimate, bin_width, of_estimate[0]), binned(reference, bin_width, of_reference[0]),
+          ranked(estimate)};
 }
 
 RankedValues ranked(const Array<double>& values) {

@@ -17,16 +17,6 @@ struct DirectedDistribution {
   double p95 = 0.0;
 };
 
-/// How an error of nearest pairs is distributed; both directions in the same bins, up to the 99th percentile.
-struct Distribution {
-  double bin_width = 0.0;
-  DirectedDistribution estimate_to_reference, reference_to_estimate;
-};
-
-using PairError = double (NearestPairs::*)(std::size_t slot) const;
-
-Distribution distribution_of(const MapPair& pair, PairError error);
-
 /// Values by rank, from which a page counts what lies outside of a range: all of them, or where they are many those of
 /// evenly spaced ranks, the lowest and the highest among them.
 struct RankedValues {
@@ -39,7 +29,16 @@ inline constexpr std::size_t kMostRanked = 10'001;
 /// To single precision.
 RankedValues ranked(const Array<double>& values);
 
-/// The errors of one direction that there are: no color, no distance of colors.
-Array<double> errors_of(const NearestPairs& pairs, PairError error);
+/// How an error of nearest pairs is distributed; both directions in the same bins, up to the 99th percentile. A pair
+/// without both colors has no distance of colors.
+struct Distribution {
+  double bin_width = 0.0;
+  DirectedDistribution estimate_to_reference, reference_to_estimate;
+  RankedValues ranked_estimate;  ///< the errors from estimate to reference
+};
+
+using PairError = double (NearestPairs::*)(std::size_t slot) const;
+
+Distribution distribution_of(const MapPair& pair, PairError error);
 
 }  // namespace cmap

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "cmap/io/file_place.hpp"
 #include "report/base64.hpp"
 #include "report/distribution.hpp"
 #include "report/embedded_file.hpp"
@@ -116,12 +117,12 @@ PageData page_data(const Json& report, const Evaluation& evaluation) {
   if (evaluation.recall) layers.push_back(recall_layer(*evaluation.recall));
   if (pair.has_color()) {
     const Distribution colors = distribution_of(pair, &NearestPairs::color_distance);
-    layers.push_back(color_distance_layer(pair, colors));
+    layers.push_back(color_distance_layer(colors));
     distributions.push_back(
         distribution_json("color_distance", "Color distance to the nearest point", "unit RGB", colors, pair));
   }
   const Distribution distances = distribution_of(pair, &NearestPairs::distance_m);
-  layers.push_back(distance_layer(pair, distances));
+  layers.push_back(distance_layer(distances));
   distributions.insert(distributions.begin(),
                        distribution_json("distance", "Distance to the nearest point", "m", distances, pair));
   if (pair.estimate.has_color()) layers.push_back(height_layer(pair.estimate, "estimate", "Height"));

@@ -50,14 +50,14 @@ Json height_layer(const IndexedMap& map, const char* map_id, const char* title) 
                       {low, high > low ? high : low + 1.0}, "m", all);
 }
 
-Json distance_layer(const MapPair& pair, const Distribution& errors) {
-  return scalar_layer("distance", "estimate", "Distance to the reference", "distance", "viridis", error_range(errors),
-                      "m", ranked(errors_of(pair.estimate_to_reference(), &NearestPairs::distance_m)));
+Json distance_layer(const Distribution& distances) {
+  return scalar_layer("distance", "estimate", "Distance to the reference", "distance", "viridis",
+                      error_range(distances), "m", distances.ranked_estimate);
 }
 
-Json color_distance_layer(const MapPair& pair, const Distribution& errors) {
-  return scalar_layer("color-distance", "estimate", "Color distance", "color_distance", "inferno", error_range(errors),
-                      "unit RGB", ranked(errors_of(pair.estimate_to_reference(), &NearestPairs::color_distance)));
+Json color_distance_layer(const Distribution& color_distances) {
+  return scalar_layer("color-distance", "estimate", "Color distance", "color_distance", "inferno",
+                      error_range(color_distances), "unit RGB", color_distances.ranked_estimate);
 }
 
 /// Shares are the metric's: of the points that have a color.

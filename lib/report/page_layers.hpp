@@ -15,9 +15,9 @@ namespace cmap {
 nlohmann::ordered_json map_layer(const IndexedMap& map, const char* map_id, const char* title);
 nlohmann::ordered_json height_layer(const IndexedMap& map, const char* map_id, const char* title);
 
-/// Errors of the estimate's points; `errors` are those distances of this pair.
-nlohmann::ordered_json distance_layer(const MapPair& pair, const Distribution& errors);
-nlohmann::ordered_json color_distance_layer(const MapPair& pair, const Distribution& errors);
+/// Errors of the estimate's points.
+nlohmann::ordered_json distance_layer(const Distribution& distances);
+nlohmann::ordered_json color_distance_layer(const Distribution& color_distances);
 
 nlohmann::ordered_json recall_layer(const LocalColorRecall& recall);
 

@@ -42,7 +42,7 @@ TEST(DistanceLayer, RanksTheErrorsOfEveryPoint) {
   const test::Clouds clouds{test::cloud_of({{0, 0, 0}, {50, 0, 0}, {0, 50, 0}}),
                             test::cloud_of({{0, 0, 0.5f}, {50, 0, 0.1f}, {0, 50, 2}})};
   const MapPair pair = clouds.pair();
-  const auto layer = distance_layer(pair, distribution_of(pair, &NearestPairs::distance_m));
+  const auto layer = distance_layer(distribution_of(pair, &NearestPairs::distance_m));
   EXPECT_EQ(layer.at("ranked").at("points"), 3);
   EXPECT_THAT(layer.at("ranked").at("values"), ElementsAre(0.1, 0.5, 2.0)) << "0.1 as typed, not as a float";
 }
@@ -52,7 +52,7 @@ TEST(ColorDistanceLayer, RanksPointsThatHaveAColor) {
   clouds.reference.colors = Array<RgbF>{{0, 0, 0}, {NAN, NAN, NAN}};
   clouds.estimate.colors = Array<RgbF>{{1, 0, 0}, {1, 1, 1}};
   const MapPair pair = clouds.pair();
-  const auto layer = color_distance_layer(pair, distribution_of(pair, &NearestPairs::color_distance));
+  const auto layer = color_distance_layer(distribution_of(pair, &NearestPairs::color_distance));
   EXPECT_EQ(layer.at("ranked").at("points"), 1);
   EXPECT_THAT(layer.at("ranked").at("values"), ElementsAre(1.0));
 }
