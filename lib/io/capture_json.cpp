@@ -105,8 +105,11 @@ Json matrix_json(const Eigen::Isometry3d& transform) {
 CaptureDescription parse_capture_json(const std::string& text, const std::string& source, const Faults& faults) {
   CaptureDescription description;
   CaptureCalibration& calibration = description.calibration;
+  Json parsed;
+  const bool is_json = faults.attempt([&] { read_input_json(text, source, [&](const Json& json) { parsed = json; }); });
+  if (!is_json) return description;
   const auto part = [&](const JsonReader& read) {
-    return faults.attempt([&] { read_input_json(text, source, read); });
+    faults.attempt([&] { read_parsed_input_json(parsed, source, read); });
   };
   // A part that is not there is named with all keys.
   const auto part_of = [&](const char* key, const JsonReader& read) {
@@ -114,12 +117,10 @@ CaptureDescription parse_capture_json(const std::string& text, const std::string
       if (json.contains(key)) read(json[key]);
     });
   };
-  bool is_object = false;
   part([&](const Json& json) {
-    is_object = json.is_object();
     check_keys(json, "", {"version", "camera", "T_imu_lidar", "T_lidar_camera"}, {"imu", "time_offset"});
   });
-  if (!is_object) return description;
+  if (!parsed.is_object()) return description;
   part_of("version", [](const Json& json) {
     if (json != 1) throw UsageError(fmt::format("version is {}; 1 expected", json.dump()));
   });

@@ -33,6 +33,10 @@ void read_input_json(const std::string& text, const std::string& source, const J
   as_input([&] { read_json(text, source, read); });
 }
 
+void read_parsed_input_json(const Json& parsed, const std::string& source, const JsonReader& read) {
+  as_input([&] { read_parsed_json(parsed, source, read); });
+}
+
 void read_input_json_file(const std::filesystem::path& path, const std::string& kind, const JsonReader& read) {
   if (!std::filesystem::exists(path))
     throw InputError(fmt::format("{}: no such file; {} expected", path.string(), kind));

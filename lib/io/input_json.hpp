@@ -9,8 +9,9 @@
 
 namespace cmap {
 
-/// read_json() and read_json_file() for data in place of configuration: what is wrong is an InputError.
+/// read_json() and its kin for data in place of configuration: what is wrong is an InputError.
 void read_input_json(const std::string& text, const std::string& source, const JsonReader& read);
+void read_parsed_input_json(const nlohmann::ordered_json& parsed, const std::string& source, const JsonReader& read);
 void read_input_json_file(const std::filesystem::path& path, const std::string& kind, const JsonReader& read);
 
 /// Throws UsageError naming the key unless `json` is an object with all of `required` and nothing else but `optional`;

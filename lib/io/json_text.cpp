@@ -31,17 +31,27 @@ class RepetitionCheck {
   std::vector<std::set<std::string>> keys_;  ///< of the objects around the place
 };
 
-}  // namespace
-
-void read_json(const std::string& text, const std::string& source, const JsonReader& read) {
+/// Whatever is wrong with the JSON of a source names it.
+template <class Read>
+void name_source(const std::string& source, Read&& read) {
   try {
-    read(Json::parse(text, RepetitionCheck(), true, /*ignore_comments=*/true));
+    read();
   } catch (const Json::exception& error) {
     const std::string_view message = error.what();  // "[json.exception...] parse error at line 1, column 2: ..."
     throw UsageError(fmt::format("{}: {}", source, message.substr(message.find(']') + 2)));
   } catch (const UsageError& error) {
     throw UsageError(fmt::format("{}: {}", source, error.what()));
   }
+}
+
+}  // namespace
+
+void read_json(const std::string& text, const std::string& source, const JsonReader& read) {
+  name_source(source, [&] { read(Json::parse(text, RepetitionCheck(), true, /*ignore_comments=*/true)); });
+}
+
+void read_parsed_json(const Json& parsed, const std::string& source, const JsonReader& read) {
+  name_source(source, [&] { read(parsed); });
 }
 
 void read_json_file(const std::filesystem::path& path, const std::string& kind, const JsonReader& read) {

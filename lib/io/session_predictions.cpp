@@ -64,16 +64,18 @@ void require_convention(const Json& meta, const char* key, std::initializer_list
 /// Other keys say where a session comes from, and are not read.
 void check_meta(const fs::path& path, const SessionPredictions& session, std::size_t frame_count,
                 const Faults& faults) {
+  Json parsed;
+  const bool is_json = faults.attempt(
+      [&] { read_input_json_file(path, "the description of a session", [&](const Json& meta) { parsed = meta; }); });
+  if (!is_json) return;
   const auto part = [&](const JsonReader& read) {
-    return faults.attempt([&] { read_input_json_file(path, "the description of a session", read); });
+    faults.attempt([&] { read_parsed_input_json(parsed, path.string(), read); });
   };
-  bool is_object = false;
   part([&](const Json& meta) {
-    is_object = meta.is_object();
-    if (!is_object) throw UsageError("an object expected");
+    if (!meta.is_object()) throw UsageError("an object expected");
     if (!meta.contains("version") || meta["version"] != 1) throw UsageError("\"version\": 1 expected");
   });
-  if (!is_object) return;
+  if (!parsed.is_object()) return;
   const std::size_t sizes[] = {frame_count, static_cast<std::size_t>(session.width),
                                static_cast<std::size_t>(session.height)};
   const char* const names[] = {"frames", "width", "height"};
