@@ -81,6 +81,12 @@ std::optional<StampedPose> pose_at(const Trajectory& trajectory, double time_s, 
                      before.rotation.slerp(share, after->rotation)};
 }
 
+std::string times_of_scans_and_poses(const Capture& capture, double max_gap_s) {
+  return fmt::format("scans from {:.3f} to {:.3f} s, poses from {:.3f} to {:.3f} s, gaps of at most {:g} s",
+                     capture.scans.front().time_s, capture.scans.back().time_s, capture.lio.front().time_s,
+                     capture.lio.back().time_s, max_gap_s);
+}
+
 std::vector<Eigen::Vector3d> scanner_positions(const Capture& capture, double max_gap_s) {
   std::vector<Eigen::Vector3d> positions;
   for (const StampedFile& scan : capture.scans) {
@@ -91,11 +97,8 @@ std::vector<Eigen::Vector3d> scanner_positions(const Capture& capture, double ma
   if (capture.lio.empty() || capture.scans.empty()) {
     throw InputError(fmt::format("{}: scans and LiDAR-inertial poses (lio.tum) are needed", capture.folder.string()));
   }
-  throw InputError(
-      fmt::format("{}: no scan has a LiDAR-inertial pose (lio.tum) at its time: scans from {:.3f} to {:.3f} s, poses "
-                  "from {:.3f} to {:.3f} s, gaps of at most {:g} s",
-                  capture.folder.string(), capture.scans.front().time_s, capture.scans.back().time_s,
-                  capture.lio.front().time_s, capture.lio.back().time_s, max_gap_s));
+  throw InputError(fmt::format("{}: no scan has a LiDAR-inertial pose (lio.tum) at its time: {}",
+                               capture.folder.string(), times_of_scans_and_poses(capture, max_gap_s)));
 }
 
 std::vector<PosePair> pair_in_time(const Trajectory& source, const Trajectory& target, double max_gap_s) {

@@ -40,11 +40,9 @@ void check_scan_times(const Capture& capture, double max_gap_s, CaptureCheck& ch
   if (n_missing == 0) return;
   const bool is_any = n_missing < std::ssize(scans);
   (is_any ? check.warnings : check.faults)
-      .push_back(
-          fmt::format("{}: {} of {} scans have no LiDAR-inertial pose at their time: scans from {:.3f} to {:.3f} s, "
-                      "poses from {:.3f} to {:.3f} s, gaps of at most {:g} s (max_gap_s)",
-                      (capture.folder / "lidar.csv").string(), n_missing, scans.size(), scans.front().time_s,
-                      scans.back().time_s, poses.front().time_s, poses.back().time_s, max_gap_s));
+      .push_back(fmt::format("{}: {} of {} scans have no LiDAR-inertial pose at their time: {} (max_gap_s)",
+                             (capture.folder / "lidar.csv").string(), n_missing, scans.size(),
+                             times_of_scans_and_poses(capture, max_gap_s)));
 }
 
 void check_scans(const Capture& capture, const ProgressSink& progress, CaptureCheck& check) {

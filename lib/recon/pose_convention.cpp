@@ -6,6 +6,8 @@
 #include <cmath>
 #include <span>
 
+#include "cmap/core/error.hpp"
+
 namespace cmap {
 namespace {
 
@@ -99,12 +101,6 @@ bool agrees(const Agreement& found, const MotionSize& size) {
 
 }  // namespace
 
-std::vector<Eigen::Isometry3d> poses_of_file(const SessionPredictions& session) {
-  Poses poses;
-  for (const Eigen::Isometry3d& pose : session.T_camera_session) poses.push_back(pose * session.T_session_file);
-  return poses;
-}
-
 std::string pose_convention_doubt(const Poses& given, const OdometryPoses& T_world_camera) {
   const std::vector<Motion> motions = motions_of(T_world_camera);
   if (motions.empty()) return {};
@@ -121,6 +117,14 @@ std::string pose_convention_doubt(const Poses& given, const OdometryPoses& T_wor
       "the poses contradict the LiDAR-inertial ones, and agree with them as {}; camera-from-world in "
       "OpenCV's axes (x right, y down, z forward), first frame first, expected",
       fmt::join(names, ", or as "));
+}
+
+void require_pose_convention(const std::string& name, const SessionPredictions& session,
+                             const OdometryPoses& T_world_camera) {
+  Poses given;
+  for (const Eigen::Isometry3d& pose : session.T_camera_session) given.push_back(pose * session.T_session_file);
+  const std::string doubt = pose_convention_doubt(given, T_world_camera);
+  if (!doubt.empty()) throw InputError(fmt::format("{}: extrinsic: {}", name, doubt));
 }
 
 }  // namespace cmap

@@ -56,8 +56,7 @@ ReadSession read_and_place(const Capture& capture, std::size_t index, const Reco
     const OdometryPoses poses = odometry_poses(capture, times_s, options.prefusion);
     const auto n_placed = std::ranges::count_if(poses, [](const auto& pose) { return pose.has_value(); });
     if (n_placed == 0) throw UnsupportedError(no_common_time(times_s, capture.lio, options.prefusion.max_gap_s));
-    const std::string doubt = pose_convention_doubt(poses_of_file(*session.predictions), poses);
-    if (!doubt.empty()) throw InputError(fmt::format("{}: extrinsic: {}", capture.sessions[index].string(), doubt));
+    require_pose_convention(capture.sessions[index].string(), *session.predictions, poses);
     if (n_placed < static_cast<std::ptrdiff_t>(poses.size())) {
       outcome.flags.push_back(fmt::format("{} of {} frames have no LiDAR-inertial pose",
                                           static_cast<std::ptrdiff_t>(poses.size()) - n_placed, poses.size()));

@@ -65,8 +65,7 @@ void SessionCheck::compare_with_poses(const std::string& name, const SessionPred
                                           name, std::ssize(poses) - n_placed, poses.size(), max_gap_s));
   }
   if (session.T_camera_session.size() != poses.size()) return;
-  const std::string doubt = pose_convention_doubt(poses_of_file(session), poses);
-  if (!doubt.empty()) throw InputError(fmt::format("{}: extrinsic: {}", name, doubt));
+  require_pose_convention(name, session, poses);
 }
 
 /// Frames and pictures have one clock and one camera.

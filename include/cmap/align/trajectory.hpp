@@ -18,6 +18,10 @@ namespace cmap {
 /// two poses around the time are more than max_gap_s apart (a pose at that very time always counts). Thread-safe.
 std::optional<StampedPose> pose_at(const Trajectory& trajectory, double time_s, double max_gap_s = 0.15);
 
+/// For messages, of a capture that has scans and poses: "scans from 1 to 2 s, poses from 3 to 4 s, gaps of at most 0.15
+/// s".
+std::string times_of_scans_and_poses(const Capture& capture, double max_gap_s);
+
 /// Where the scanner of a capture was at the time of each scan that has a pose. Throws InputError where none has.
 std::vector<Eigen::Vector3d> scanner_positions(const Capture& capture, double max_gap_s = 0.15);
 
