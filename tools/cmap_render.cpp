@@ -9,6 +9,7 @@
 
 #include "cmap/core/parallel.hpp"
 #include "cmap/core/progress.hpp"
+#include "cmap/io/file_place.hpp"
 #include "cmap/render/figure.hpp"
 #include "cmap/render/gl_module.hpp"
 #include "cmap/render/point_text.hpp"
@@ -198,14 +199,11 @@ void draw(const Arguments& a, const Scene& scene, const Plan& plan, cmap::Progre
   if (!a.turntable.empty()) write_turn(a, scene, plan, progress);
 }
 
-/// Pictures are shown to others: they name files, not folders.
-std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
-
 void draw_map(const Arguments& a, const Plan& plan, cmap::ProgressBar& progress) {
   if (!a.panels.empty() || !a.transform.empty()) throw cmap::UsageError("--panels and --transform need a second map");
   progress.update("read", 0.0);
   const cmap::IndexedMap map(cmap::read_point_cloud(a.map, cmap::read_options(plan.evaluation)).cloud);
-  const std::string name = file_name(a.map);
+  const std::string name = cmap::file_name(a.map);
   const std::vector<cmap::Layer> layers{cmap::make_layer(map, name, plan.layer)};
   const auto describe = [&](const cmap::PointBlocks&, std::size_t slot) { return cmap::describe_point(map, slot); };
   draw(a, {name, layers, map.index.points, describe}, plan, progress);
@@ -239,7 +237,7 @@ void draw_pair(const Arguments& a, const Plan& plan, cmap::ProgressBar& progress
   const auto describe = [&](const cmap::PointBlocks& points, std::size_t slot) {
     return cmap::describe_point(evaluation, points, slot);
   };
-  const std::string title = fmt::format("{}, {}", file_name(a.map), file_name(a.estimate));
+  const std::string title = fmt::format("{}, {}", cmap::file_name(a.map), cmap::file_name(a.estimate));
   draw(a, {title, layers, evaluation.pair.reference.index.points, describe}, plan, progress);
 }
 

@@ -42,7 +42,7 @@ inline void refuse_empty(CLI::App& app, std::initializer_list<const char*> optio
 inline CLI::Validator one_of(std::vector<std::string> words) {
   const auto reason = [words = std::move(words)](std::string& text) {
     if (std::ranges::count(words, text) > 0) return std::string();
-    return fmt::format("\"{}\" is none of {}{}", text, fmt::join(words, ", "), did_you_mean(text, words));
+    return fmt::format("\"{}\" {}", text, is_none_of(text, words));
   };
   return {reason, ""};
 }

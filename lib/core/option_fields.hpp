@@ -1,7 +1,6 @@
 #pragma once
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -140,8 +139,7 @@ class FieldReader {
       }
       known.emplace_back(name);
     }
-    const std::string near = json->is_string() ? did_you_mean(json->get<std::string>(), known) : "";
-    refuse(key, *json, fmt::format("is none of {}{}", fmt::join(known, ", "), near));
+    refuse(key, *json, is_none_of(json->is_string() ? json->get<std::string>() : "", known));
   }
 
   void finish() const {

@@ -9,7 +9,6 @@
 
 #include "cmap/core/error.hpp"
 #include "cmap/core/spelling.hpp"
-#include "cmap/eval/metric_names.hpp"
 
 namespace cmap {
 namespace {

@@ -137,8 +137,7 @@ std::string one_of(const char* name, const Json& value, std::initializer_list<co
   for (const std::string& word : known) {
     if (value == word) return word;
   }
-  const std::string near = value.is_string() ? did_you_mean(value.get<std::string>(), known) : "";
-  refuse(name, value, fmt::format("is none of {}{}", fmt::join(known, ", "), near).c_str());
+  refuse(name, value, is_none_of(value.is_string() ? value.get<std::string>() : "", known).c_str());
 }
 
 bool flag(const char* name, const Json& value) {

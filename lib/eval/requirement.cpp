@@ -9,7 +9,7 @@
 
 #include "cmap/core/error.hpp"
 #include "cmap/core/spelling.hpp"
-#include "cmap/eval/metric_names.hpp"
+#include "cmap/eval/metric_catalog.hpp"
 
 namespace cmap {
 namespace {

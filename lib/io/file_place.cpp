@@ -4,6 +4,8 @@ namespace cmap {
 
 namespace fs = std::filesystem;
 
+std::string file_name(const fs::path& path) { return path.filename().string(); }
+
 std::string name_of_input(const fs::path& path) { return path == kStandardStream ? "standard input" : path.string(); }
 
 fs::path place_of_file(const fs::path& path) {

@@ -3,16 +3,12 @@
 #include <algorithm>
 #include <cctype>
 
+#include "cmap/core/spelling.hpp"
 #include "io/line_reader.hpp"
 #include "io/number_text.hpp"
 
 namespace cmap {
 namespace {
-
-std::string lowercase(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
 
 bool is_text(std::string_view start) {
   return std::none_of(start.begin(), start.end(), [](char c) {
@@ -41,8 +37,8 @@ FileStart file_start(ByteSource& source) {
   const auto window = source.peek(std::min<std::uint64_t>(FileStart::kBytes, source.size()));
   FileStart start;
   const std::filesystem::path path(source.name());
-  start.name = lowercase(path.filename().string());
-  start.extension = lowercase(path.extension().string());
+  start.name = lower_case(path.filename().string());
+  start.extension = lower_case(path.extension().string());
   start.bytes = without_byte_order_mark(
       {reinterpret_cast<const char*>(window.data()), std::min(FileStart::kBytes, window.size())});
   start.size = source.size();

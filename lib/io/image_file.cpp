@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cmap/core/spelling.hpp"
 #include "cmap/io/output_file.hpp"
 #include "io/byte_source.hpp"
 
@@ -65,9 +66,7 @@ void write_image(const RgbImage& image, const std::filesystem::path& path) {
       image.width > 0 && image.height > 0 &&
       image.pixels.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
   if (!right) throw std::invalid_argument("write_image: width * height pixels expected");
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
+  const std::string extension = lower_case(path.extension().string());
   if (extension != ".jpg" && extension != ".jpeg" && extension != ".png") {
     throw UsageError(fmt::format("{}: an image is written as .jpg or .png", path.string()));
   }

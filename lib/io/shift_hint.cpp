@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "cmap/core/spelling.hpp"
 #include "io/number_text.hpp"
 
 namespace cmap {
@@ -49,12 +50,6 @@ std::vector<double> numbers_of(std::string_view text) {
   return numbers;
 }
 
-std::string lowered(std::string_view text) {
-  std::string lower(text);
-  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower;
-}
-
 /// What a comment says; nothing if the line is none.
 std::optional<std::string_view> comment_of(std::string_view line) {
   for (const std::string_view mark : {"comment ", "obj_info ", "#", "//"}) {
@@ -70,7 +65,7 @@ void add_comments(const fs::path& map, std::vector<ShiftHint>& hints) {
     if (line.starts_with("end_header") || line.starts_with("DATA")) break;
     const std::optional<std::string_view> comment = comment_of(line);
     if (!comment) continue;
-    const std::string lower = lowered(*comment);
+    const std::string lower = lower_case(*comment);
     const std::size_t word = std::min(lower.find("offset"), lower.find("shift"));
     if (word == std::string::npos) continue;
     const std::vector<double> shift = numbers_of(comment->substr(word));
@@ -100,7 +95,7 @@ void add_pix4d(const fs::path& map, std::vector<ShiftHint>& hints) {
 void add_open_drone_map(const fs::path& file, std::vector<ShiftHint>& hints) {
   const std::string head = head_of(file);
   std::string_view rest = head;
-  if (lowered(next_line(rest)).find("utm") == std::string::npos) return;
+  if (lower_case(next_line(rest)).find("utm") == std::string::npos) return;
   if (rest.starts_with('\n')) rest.remove_prefix(1);
   const std::vector<double> shift = numbers_of(next_line(rest));
   if (shift.size() == 2 || shift.size() == 3) {

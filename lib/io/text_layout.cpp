@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "cmap/core/spelling.hpp"
 #include "io/foreign_formats.hpp"
 #include "io/not_a_cloud.hpp"
 #include "io/point_schema.hpp"
@@ -104,9 +105,7 @@ void assign_by_names(const Names& names, TextLayout& layout, FileInfo& info) {
 }
 
 bool is_pts(const ByteSource& source) {
-  std::string extension = std::filesystem::path(source.name()).extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
-  return extension == ".pts";
+  return lower_case(std::filesystem::path(source.name()).extension().string()) == ".pts";
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "cmap/core/spelling.hpp"
 #include "io/coordinate_units.hpp"
 #include "io/number_text.hpp"
 #include "io/wkt.hpp"
@@ -37,8 +38,7 @@ double factor_of(const WktNode& unit) {
 
 /// Whether a unit is a foot by its name and a meter by its factor, as some libraries wrote that of heights.
 bool is_contradiction(const WktNode& unit) {
-  std::string name = unit.values[0];
-  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string name = lower_case(unit.values[0]);
   return factor_of(unit) == 1.0 && (name.find("foot") != name.npos || name.find("feet") != name.npos);
 }
 

@@ -5,13 +5,13 @@
 #include <filesystem>
 #include <string>
 
+#include "cmap/core/spelling.hpp"
+
 namespace cmap {
 
 /// ".png" of "Figure.PNG"
 inline std::string lower_case_extension(const std::filesystem::path& name) {
-  std::string extension = name.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
-  return extension;
+  return lower_case(name.extension().string());
 }
 
 }  // namespace cmap

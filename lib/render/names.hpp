@@ -1,7 +1,6 @@
 #pragma once
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <string>
 #include <string_view>
@@ -22,8 +21,7 @@ Value value_of_name(std::string_view kind, std::string_view name,
     if (name == known_name) return value;
     known.emplace_back(known_name);
   }
-  throw UsageError(
-      fmt::format("{} \"{}\" is none of {}{}", kind, name, fmt::join(known, ", "), did_you_mean(name, known)));
+  throw UsageError(fmt::format("{} \"{}\" {}", kind, name, is_none_of(name, known)));
 }
 
 }  // namespace cmap

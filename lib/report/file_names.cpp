@@ -46,8 +46,6 @@ Json shortened(const Json& value, const std::vector<std::string>& folders) {
 
 }  // namespace
 
-std::string file_name(std::string_view path) { return std::filesystem::path(path).filename().string(); }
-
 std::string with_file_names(std::string_view text) {
   std::string shortened;
   for (std::size_t at = 0; at < text.size();) {

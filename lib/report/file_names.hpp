@@ -6,9 +6,6 @@
 
 namespace cmap {
 
-/// The name of a file without its folders.
-std::string file_name(std::string_view path);
-
 /// The text with the last part alone of every absolute path in it: pages and tables are shared, and the folders of
 /// whoever made them are nobody's business. Relative paths stay.
 std::string with_file_names(std::string_view text);

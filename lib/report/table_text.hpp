@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "cmap/eval/metric_names.hpp"
+#include "cmap/eval/metric_catalog.hpp"
 
 namespace cmap {
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "cmap/core/error.hpp"
+#include "cmap/core/spelling.hpp"
 #include "cmap/io/image_file.hpp"
 #include "sim/mesh_file.hpp"
 #include "sim/noise.hpp"
@@ -75,8 +76,7 @@ RgbF mesh_color(const MeshColors& mesh, std::uint32_t triangle, const Eigen::Vec
 }
 
 MeshFile read_mesh(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string extension = lower_case(path.extension().string());
   ByteSource source(path);
   if (extension == ".ply") return read_ply_mesh(source);
   if (extension == ".obj") return read_obj_mesh(source, path.parent_path());

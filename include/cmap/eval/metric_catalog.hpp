@@ -48,4 +48,10 @@ MetricSelection select_metrics(const EvaluationOptions& options);
 /// nothing without a reference.
 MetricSelection select_map_metrics(const EvaluationOptions& options);
 
+/// Whether a metric is a share of points, which people read in percent.
+bool is_share(const MetricInfo& metric);
+
+/// Ids and symbols of all metrics.
+std::vector<std::string> metric_names();
+
 }  // namespace cmap

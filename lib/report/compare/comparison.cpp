@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cmap/io/file_place.hpp"
 #include "report/compare/comparison_scores.hpp"
 #include "report/compare/gain_intervals.hpp"
 #include "report/compare/html_tables.hpp"
