@@ -117,7 +117,7 @@ void write_figure(const cmap::Reconstruction& r, const std::string& name, cmap::
 }
 #else
 void check_figure(const Arguments& a) {
-  if (!a.figure.empty()) throw cmap::UsageError("--figure: this build has no figures (VTK was not found)");
+  if (!a.figure.empty()) throw cmap::UnsupportedError("--figure: this build has no figures (tools/install_dependencies.sh --all, build again)");
 }
 void write_figure(const cmap::Reconstruction&, const std::string&, cmap::OutputFile&) {}
 #endif

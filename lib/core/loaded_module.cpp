@@ -11,7 +11,7 @@ namespace cmap {
 
 LoadedModule::LoadedModule(const char* library, const char* missing)
     : library_(::dlopen(library, RTLD_NOW | RTLD_LOCAL)) {
-  if (library_ == nullptr) throw UsageError(fmt::format("{}: {}", missing, ::dlerror()));
+  if (library_ == nullptr) throw UnsupportedError(fmt::format("{}: {}", missing, ::dlerror()));
 }
 
 void* LoadedModule::address(const char* name) const {

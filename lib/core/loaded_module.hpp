@@ -6,8 +6,8 @@ namespace cmap {
 /// without.
 class LoadedModule {
  public:
-  /// Found by the program's run path; never unloaded, as VTK's libraries do not survive that. Throws UsageError that
-  /// begins with `missing` where this build has none.
+  /// Found by the program's run path; never unloaded, as VTK's libraries do not survive that. Throws UnsupportedError
+  /// that begins with `missing` where this build has none.
   LoadedModule(const char* library, const char* missing);
 
   template <class Function>

@@ -5,7 +5,7 @@
 namespace cmap {
 
 GlModule::GlModule() {
-  const LoadedModule module("libcmap_gl.so", "this build has no OpenGL (tools/install_dependencies.sh, build again)");
+  const LoadedModule module("libcmap_gl.so", "this build has no OpenGL (tools/install_dependencies.sh --all, build again)");
   module.find("cmap_gl_open_splatter", open_splatter_);
   module.find("cmap_gl_require_display", require_display_);
   module.find("cmap_gl_view", view_);

@@ -102,7 +102,7 @@ class Align(unittest.TestCase):
         truth = similarity(2.0, 1.2, (50, -30, 5))
         moved = self.moved_town(truth)
         result = self.run_program(REFERENCE, REFERENCE, "--method", "global", "--quiet")
-        if "no global registration in this build" in result.stderr:
+        if "this build has no global registration" in result.stderr:
             self.skipTest("built without PCL")
         T, report = self.align(moved, REFERENCE, "--method", "global", "--scale")
         self.expect_same(T, truth, 0.05)

@@ -34,8 +34,8 @@ struct AlignOptions {
 /// Aligns a source map to a target map: one door to icp.hpp, sim3_icp.hpp and global.hpp. Units are meters; the clouds
 /// may lie anywhere. Thread-safe; bitwise the same for any number of threads. Throws UnsupportedError where the
 /// alignment cannot be determined (no overlap; a plane, line, sphere or corridor, saying which direction is free;
-/// T_initial no similarity), UsageError for wrong options and for kGlobal in a build without PCL, std::invalid_argument
-/// on an empty cloud.
+/// T_initial no similarity) and for kGlobal in a build without PCL, UsageError for wrong options,
+/// std::invalid_argument on an empty cloud.
 Alignment align(const PointCloud& source, const PointCloud& target, AlignMethod method,
                 const AlignOptions& options = {});
 

@@ -18,7 +18,7 @@ struct ViewerScene {
 /// The module gl, loaded when it is asked for: programs that may draw by OpenGL start without it.
 class GlModule {
  public:
-  /// Throws UsageError where cmap was built without OpenGL.
+  /// Throws UnsupportedError where cmap was built without OpenGL.
   GlModule();
 
   /// A splatter for FigureOptions that draws by OpenGL (cmap/gl/splat_gl.hpp), and the device's name. Throws UsageError

@@ -11,7 +11,7 @@ namespace cmap {
 /// The module render, loaded when a figure is asked for: programs that may draw start without VTK.
 class FigureModule {
  public:
-  /// Throws UsageError where cmap was built without figures.
+  /// Throws UnsupportedError where cmap was built without figures.
   FigureModule();
 
   /// Throws UsageError for a name that is no picture's.
