@@ -7,7 +7,8 @@
 
 #include "cmap/core/color.hpp"
 #include "cmap/metrics/local_color_recall.hpp"
-#include "cmap/metrics/mean_map_entropy.hpp"
+#include "cmap/metrics/catalog.hpp"
+#include "cmap/metrics/metric_sums.hpp"
 #include "town_pair.hpp"
 
 #ifdef CMAP_WITH_NANOFLANN
@@ -33,15 +34,24 @@ cmap::MapPair pair_of(const cmap::benchmarks::TownPair& town) {
 void recall_cmap(benchmark::State& state) {
   const cmap::MapPair pair = pair_of(cmap::benchmarks::town(state.range(0), false));
   std::uint64_t n_recalled = 0;
-  for (auto _ : state) n_recalled = cmap::local_color_recall(pair, {tau_of(state), kRadius_m, false}).n_recalled;
+  for (auto _ : state) {
+    const auto classes = cmap::find_recall(pair, {tau_of(state), kRadius_m, false}).classes;
+    n_recalled = static_cast<std::uint64_t>(std::ranges::count(classes, cmap::RecallClass::kRecalled));
+  }
   state.counters["recalled"] = static_cast<double>(n_recalled);
 }
 
 void entropy_cmap(benchmark::State& state) {
-  const cmap::Bvh index(cmap::sort_points(cmap::benchmarks::town(state.range(0), false).estimate));
-  std::uint64_t n = 0;
-  for (auto _ : state) n = cmap::mean_map_entropy(cmap::neighborhood_shapes(index, kEntropyRadius_m), 10).n;
-  state.counters["valid"] = static_cast<double>(n);
+  const cmap::IndexedMap map(cmap::benchmarks::town(state.range(0), false).estimate);
+  cmap::MetricOptions options;
+  options.mme_radius_m = kEntropyRadius_m;
+  double n = 0.0;
+  for (auto _ : state) {
+    cmap::MetricInputs inputs(options, map);
+    std::vector<cmap::Warning> warnings;
+    n = *cmap::measure(cmap::catalog::mean_map_entropy, inputs, warnings).number("n");
+  }
+  state.counters["valid"] = n;
 }
 
 #ifdef CMAP_WITH_NANOFLANN

@@ -3,17 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <random>
 #include <stdexcept>
 
-#include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
 
 namespace cmap {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// How often each of n blocks is drawn when n are; the same for every standard library.
 std::vector<double> draw(std::size_t n, std::uint64_t seed) {
@@ -64,7 +60,7 @@ std::vector<Interval> resampled(std::size_t n_blocks, const BootstrapOptions& op
 MetricSums aligned(const BlockSums& blocks, const std::vector<std::array<std::int64_t, 3>>& keys) {
   MetricSums result{keys.size(), {}};
   for (const auto& [name, parts] : blocks.sums.columns) {
-    std::vector<double>& column = result.column(name);
+    std::vector<double>& column = result.columns.emplace(name, std::vector<double>(keys.size())).first->second;
     for (std::size_t i = 0; i < parts.size(); ++i) {
       column[static_cast<std::size_t>(std::ranges::lower_bound(keys, blocks.keys[i]) - keys.begin())] = parts[i];
     }
@@ -74,20 +70,24 @@ MetricSums aligned(const BlockSums& blocks, const std::vector<std::array<std::in
 
 }  // namespace
 
-std::vector<Interval> bootstrap(const BlockSums& blocks, const BootstrapOptions& options) {
+std::vector<Interval> bootstrap(const BlockSums& blocks, const MetricSettings& settings,
+                                const BootstrapOptions& options) {
+  const MetricFormulas formulas(blocks.sums, settings);
   return resampled(blocks.keys.size(), options,
-                   [&](std::span<const double> weights) { return values_of(totals_of(blocks.sums, weights)); });
+                   [&](std::span<const double> weights) { return formulas.values(weights); });
 }
 
-std::vector<Interval> bootstrap_difference(const BlockSums& a, const BlockSums& b, const BootstrapOptions& options) {
+std::vector<Interval> bootstrap_difference(const BlockSums& a, const BlockSums& b, const MetricSettings& settings,
+                                           const BootstrapOptions& options) {
   if (a.block_m != b.block_m) throw std::invalid_argument("bootstrap_difference: blocks of two sizes");
   std::vector<std::array<std::int64_t, 3>> keys;
   std::ranges::set_union(a.keys, b.keys, std::back_inserter(keys));
   const MetricSums sums_a = aligned(a, keys), sums_b = aligned(b, keys);
+  const MetricFormulas formulas_a(sums_a, settings), formulas_b(sums_b, settings);
   return resampled(keys.size(), options, [&](std::span<const double> weights) {
-    const std::vector<SummedValue> of_a = values_of(totals_of(sums_a, weights));
+    const std::vector<SummedValue> of_a = formulas_a.values(weights);
     std::vector<SummedValue> differences;
-    for (SummedValue v : values_of(totals_of(sums_b, weights))) {
+    for (SummedValue v : formulas_b.values(weights)) {
       const auto same = std::ranges::find_if(
           of_a, [&](const SummedValue& u) { return u.id == v.id && u.threshold_m == v.threshold_m; });
       if (same == of_a.end()) continue;
@@ -96,25 +96,6 @@ std::vector<Interval> bootstrap_difference(const BlockSums& a, const BlockSums& 
     }
     return differences;
   });
-}
-
-Json to_json(const BlockSums& blocks) {
-  return {{"block_m", blocks.block_m}, {"keys", blocks.keys}, {"sums", blocks.sums.columns}};
-}
-
-BlockSums block_sums_from(const Json& json) {
-  BlockSums blocks;
-  try {
-    blocks.block_m = json.at("block_m").get<double>();
-    blocks.keys = json.at("keys").get<std::vector<std::array<std::int64_t, 3>>>();
-    blocks.sums = {blocks.keys.size(), json.at("sums").get<std::map<std::string, std::vector<double>>>()};
-  } catch (const Json::exception&) {
-    throw UsageError("the report's blocks are damaged");
-  }
-  const bool whole = std::ranges::all_of(
-      blocks.sums.columns, [&](const auto& column) { return column.second.size() == blocks.keys.size(); });
-  if (!whole || !std::ranges::is_sorted(blocks.keys)) throw UsageError("the report's blocks are damaged");
-  return blocks;
 }
 
 }  // namespace cmap

@@ -1,11 +1,12 @@
 #include "cmap/eval/evaluation.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
-#include "eval/fairness_records.hpp"
-#include "eval/metric_records.hpp"
+#include "cmap/metrics/catalog.hpp"
+#include "eval/measurement.hpp"
 #include "eval/peer_records.hpp"
 #include "eval/plausibility.hpp"
 #include "eval/preparation.hpp"
@@ -17,9 +18,8 @@ namespace {
 void check_color(const PointCloud& reference, const PointCloud& estimate, const MetricSelection& selection,
                  std::vector<Warning>& warnings) {
   if (reference.has_color() && estimate.has_color()) return;
-  const bool asked = std::ranges::any_of(
-      metric_catalog(), [&](const MetricInfo& metric) { return metric.needs_color && selection.contains(metric.id); });
-  if (!asked) return;
+  const auto needs_color = [](const Metric* metric) { return metric->info.needs_color; };
+  if (std::ranges::none_of(selected_metrics(selection, true), needs_color)) return;
   const char* which = reference.has_color()  ? "the estimate has"
                       : estimate.has_color() ? "the reference has"
                                              : "both maps have";
@@ -44,42 +44,39 @@ MapPair index_and_pair(PointCloud& reference, PointCloud& estimate, IndexKind in
   return pair;
 }
 
-/// Distance statistics of both directions, for the thresholds and, last, the overlap distance.
-void measure_distances(Findings& findings) {
-  std::vector<double> thresholds = findings.options.thresholds_m;
-  thresholds.push_back(findings.options.overlap_distance_m);
-  const auto stats = [&](const NearestPairs& pairs) {
-    return distance_stats(pairs.nearest.sq_dist, thresholds, findings.options.overlap_distance_m,
-                          {pairs.most_rounding_m(), [&](std::size_t slot) { return pairs.rounding_m(slot); }});
-  };
-  parallel_tasks({[&] { findings.estimate_to_reference = stats(findings.pair.estimate_to_reference()); },
-                  [&] { findings.reference_to_estimate = stats(findings.pair.reference_to_estimate()); }});
+/// The metrics to sum: those, and what an evaluation tells in any case.
+std::vector<const Metric*> with_basics(std::vector<const Metric*> metrics) {
+  for (const Metric* basic : {&catalog::chamfer, &catalog::fitness, &catalog::rmse}) metrics.push_back(basic);
+  return metrics;
 }
 
-void check_plausibility(const Findings& f, const CoordinateSteps& steps, std::vector<Warning>& warnings) {
-  warn_about_strays(f.pair, f.estimate_to_reference, f.reference_to_estimate, warnings);
-  const Bvh &reference = f.pair.reference.index, &estimate = f.pair.estimate.index;
+void check_plausibility(const MetricInputs& inputs, const WholeSums& sums, const CoordinateSteps& steps,
+                        const EvaluationOptions& options, const MetricSelection& selection,
+                        std::vector<Warning>& warnings) {
+  const MapPair& pair = *inputs.pair;
+  const PairSums distances = sums.of(catalog::chamfer);
+  warn_about_strays(pair, mean_distances(distances.estimate), mean_distances(distances.reference), warnings);
+  const Bvh &reference = pair.reference.index, &estimate = pair.estimate.index;
   const SampledSpacing spacing = sampled_spacing(reference);
-  warn_about_points("reference", reference.points, spacing, steps.reference, f.options, warnings);
-  warn_about_points("estimate", estimate.points, sampled_spacing(estimate), steps.estimate, f.options, warnings);
-  const bool by_threshold = std::ranges::any_of(metric_catalog(), [&](const MetricInfo& metric) {
-    return metric.per_threshold && f.selection.contains(metric.id);
-  });
-  if (by_threshold) {
-    warn_about_spacing(spacing, f.pair.nearest_in_reference, f.estimate_to_reference, f.options, warnings);
+  warn_about_points("reference", reference.points, spacing, steps.reference, options, warnings);
+  warn_about_points("estimate", estimate.points, sampled_spacing(estimate), steps.estimate, options, warnings);
+  const auto by_threshold = [](const Metric* metric) { return metric->info.per_threshold; };
+  if (std::ranges::none_of(selected_metrics(selection, true), by_threshold)) return;
+  const Record fitness = catalog::fitness.value(sums.of(catalog::fitness), inputs.settings);
+  warn_about_spacing(spacing, pair.nearest_in_reference, fitness.list("per_threshold"), warnings);
+}
+
+/// What is said beside the metrics, where the options ask for it.
+void add_fairness(Evaluation& result, MetricInputs& inputs, std::span<const Metric* const> metrics,
+                  std::span<const Eigen::Vector3d> sensor_positions, std::vector<Warning>& warnings) {
+  const EvaluationOptions& options = result.options;
+  if (options.bootstrap > 0) result.intervals = intervals_of(inputs, metrics, options, warnings);
+  if (options.observed != Observed::kNone) {
+    result.unobserved = observed_part(inputs, metrics, options, sensor_positions);
   }
 }
 
-void append(std::vector<MetricRecord>& all, std::vector<MetricRecord> some) {
-  std::ranges::move(some, std::back_inserter(all));
-}
-
 }  // namespace
-
-const MetricRecord* Evaluation::find(std::string_view id) const {
-  const auto record = std::ranges::find_if(metrics, [&](const MetricRecord& m) { return m.info->id == id; });
-  return record == metrics.end() ? nullptr : &*record;
-}
 
 Evaluation evaluate(PointCloud reference, PointCloud estimate, const EvaluationOptions& options,
                     const Eigen::Matrix4d& T_ref_est, const ProgressSink& progress,
@@ -101,45 +98,23 @@ Evaluation evaluate(PointCloud reference, PointCloud estimate, const EvaluationO
   Evaluation result{
       .options = options, .T_ref_est = T_ref_est, .pair = index_and_pair(reference, estimate, options.index, clock)};
 
-  Findings findings{options, selection, result.pair, {}, {}, {}, {}, sensor_positions};
-  clock.run("geometry", 0.7, [&] {
-    measure_distances(findings);
-    result.overlap = findings.estimate_to_reference.share_within(options.thresholds_m.size());
-    result.rmse_m = std::sqrt(findings.estimate_to_reference.mean_sq_m2);
-    check_plausibility(findings, steps, warnings);
-  });
-  if (result.overlap == 0.0) {
-    warnings.push_back({"no_overlap", "no estimated point is within the overlap distance of the reference"});
-  }
-  clock.run("color", 0.75, [&] {
-    append(result.metrics, result.pair.has_color() ? color_records(findings, result.recall, warnings)
-                                                   : missing_color_records(selection));
-  });
-  append(result.metrics, geometry_records(findings));
-
-  clock.run("distribution", 0.85, [&] {
-    if (selection.needs_gaussians) {
-      findings.gaussians = gaussian_pairs(result.pair, options.awd_voxel_m, options.awd_min_points);
+  MetricInputs inputs(options, result.pair);
+  const std::vector<const Metric*> metrics = selected_metrics(selection, result.pair.has_color());
+  find_fields(metrics, inputs, clock);
+  clock.run("sums", 0.85, [&] {
+    const WholeSums sums(sum_metrics(with_basics(metrics), inputs), inputs.settings);
+    result.overlap = *catalog::overlap.value(sums.of(catalog::overlap), inputs.settings).value;
+    result.rmse_m = *catalog::rmse.value(sums.of(catalog::rmse), inputs.settings).value;
+    check_plausibility(inputs, sums, steps, options, selection, warnings);
+    if (result.overlap == 0.0) {
+      warnings.push_back({"no_overlap", "no estimated point is within the overlap distance of the reference"});
     }
-    append(result.metrics, distribution_records(findings, warnings));
+    result.metrics = with_missing(selection, finished_records(metrics, sums, inputs, warnings));
   });
-  clock.run("entropy", 0.9, [&] {
-    if (selection.needs_neighborhoods) {
-      const auto shapes = [&](const IndexedMap& map) {
-        return neighborhood_shapes(map.index, options.mme_radius_m, map.file_step_m);
-      };
-      findings.neighborhoods = Neighborhoods{shapes(result.pair.reference), shapes(result.pair.estimate)};
-    }
-    append(result.metrics, entropy_records(findings, warnings));
-  });
-  clock.run("density", 0.92, [&] { append(result.metrics, density_records(findings, warnings)); });
-  clock.run("intervals", 0.93, [&] {
-    const LocalColorRecall* recall = result.recall ? &*result.recall : nullptr;
-    result.intervals = interval_records(findings, recall, warnings);
-    result.unobserved = unobserved_records(findings, recall);
-  });
-  clock.run("other tools", 0.95, [&] { result.aliases = peer_records(findings, warnings); });
+  clock.run("intervals", 0.93, [&] { add_fairness(result, inputs, metrics, sensor_positions, warnings); });
+  clock.run("other tools", 0.95, [&] { result.peers = peer_records(inputs, options, warnings); });
 
+  result.recall = std::move(inputs.recall);
   result.warnings = std::move(warnings);
   result.stage_seconds = std::move(stage_seconds);
   return result;

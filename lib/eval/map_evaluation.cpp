@@ -1,16 +1,16 @@
 #include "cmap/eval/map_evaluation.hpp"
 
 #include "cmap/core/error.hpp"
+#include "eval/measurement.hpp"
 #include "eval/plausibility.hpp"
 #include "eval/preparation.hpp"
-#include "eval/record_list.hpp"
 #include "eval/stage_clock.hpp"
 
 namespace cmap {
 namespace {
 
 void check_color(const PointCloud& map, const MetricSelection& selection, std::vector<Warning>& warnings) {
-  if (map.has_color() || !selection.contains("color_consistency")) return;
+  if (map.has_color() || selected_metrics(selection, true) == selected_metrics(selection, false)) return;
   const std::string message = "the map has no color, which color metrics need";
   if (selection.color_is_required) throw UnsupportedError(message);
   warnings.push_back({"no_color", message + ": they are null"});
@@ -37,22 +37,13 @@ MapEvaluation evaluate_map(PointCloud map, const EvaluationOptions& options, con
 
   const Bvh& index = result.map.index;
   warn_about_points("map", index.points, sampled_spacing(index), step, options, warnings);
-  RecordList records(selection);
-  clock.run("color", 0.5, [&] {
-    records.add("color_consistency", [&]() -> nlohmann::ordered_json {
-      if (!result.map.has_color()) return {{"value", nullptr}};
-      return color_consistency_fields(options, result.map, warnings);
-    });
+  MetricInputs inputs(options, result.map);
+  const std::vector<const Metric*> metrics = selected_metrics(selection, result.map.has_color());
+  find_fields(metrics, inputs, clock);
+  clock.run("sums", 0.9, [&] {
+    const WholeSums sums(sum_metrics(metrics, inputs), inputs.settings);
+    result.metrics = with_missing(selection, finished_records(metrics, sums, inputs, warnings));
   });
-  clock.run("entropy", 0.6, [&] {
-    records.add("mean_map_entropy", [&] {
-      const auto shapes = neighborhood_shapes(index, options.mme_radius_m, result.map.file_step_m);
-      return mean_map_entropy_fields(options, shapes, warnings);
-    });
-  });
-  clock.run("density", 0.9,
-            [&] { records.add("point_spacing", [&] { return point_spacing_fields(result.map, warnings); }); });
-  result.metrics = records.take();
   result.warnings = std::move(warnings);
   result.stage_seconds = std::move(stage_seconds);
   return result;

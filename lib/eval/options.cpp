@@ -331,10 +331,6 @@ const std::vector<std::string>& peer_tools() {
   return tools;
 }
 
-const char* singletons_name(Singletons singletons) {
-  return singletons == Singletons::kZero ? "zero" : singletons == Singletons::kExclude ? "exclude" : "refuse";
-}
-
 double tanks_and_temples_tau_m(const EvaluationOptions& options) {
   return options.tanks_and_temples_tau_m.value_or(std::ranges::max(options.thresholds_m));
 }

@@ -1,11 +1,12 @@
 #pragma once
 
-#include "eval/metric_records.hpp"
+#include "cmap/eval/evaluation.hpp"
 
 namespace cmap {
 
-/// What the tools of `--as` would print on this pair, by tool; null if none is asked for. Tools that need color where a
-/// map has none get a null, with a warning.
-nlohmann::ordered_json peer_records(const Findings& findings, std::vector<Warning>& warnings);
+/// What the tools of options.as would print, by their own names; fields that they need are made where they are missing.
+/// Warnings are appended.
+std::vector<PeerRecord> peer_records(MetricInputs& inputs, const EvaluationOptions& options,
+                                     std::vector<Warning>& warnings);
 
 }  // namespace cmap

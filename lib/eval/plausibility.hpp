@@ -2,7 +2,11 @@
 
 #include "eval/cloud_body.hpp"
 #include "eval/coordinate_step.hpp"
-#include "eval/metric_records.hpp"
+#include "cmap/eval/options.hpp"
+#include "cmap/core/warning.hpp"
+#include "cmap/metrics/geometry.hpp"
+#include "cmap/metrics/map_pair.hpp"
+#include "cmap/metrics/record.hpp"
 
 // What is probably wrong with the maps, said once each and never in the way: every check appends at most one warning a
 // map, and costs a sample of the points or less. `which` is "reference", "estimate" or "map". The ids:
@@ -26,8 +30,8 @@ void warn_about_frames(const CloudBody& reference, const CloudBody& estimate, st
 double finest_step_needed_m(const EvaluationOptions& options);
 
 /// A few points that decide RMSE (of the estimate) or a half of Chamfer (of either map).
-void warn_about_strays(const MapPair& pair, const DistanceStats& estimate_to_reference,
-                       const DistanceStats& reference_to_estimate, std::vector<Warning>& warnings);
+void warn_about_strays(const MapPair& pair, const MeanDistances& estimate_to_reference,
+                       const MeanDistances& reference_to_estimate, std::vector<Warning>& warnings);
 
 /// How a map's points stand to one another, from at most 2,000 of them.
 struct SampledSpacing {
@@ -42,10 +46,9 @@ void warn_about_points(std::string_view which, const PointBlocks& points, const 
                        const std::optional<CoordinateStep>& step, const EvaluationOptions& options,
                        std::vector<Warning>& warnings);
 
-/// Thresholds below the reference's spacing that most of the estimate misses, where its distances are such as that
+/// Thresholds below the reference's spacing that most of the estimate misses (`fitness` per threshold), where its distances are such as that
 /// spacing alone would make them: not those of other errors, nor of an estimate with the reference's own points.
 void warn_about_spacing(const SampledSpacing& reference, const NearestField& nearest_in_reference,
-                        const DistanceStats& estimate_to_reference, const EvaluationOptions& options,
-                        std::vector<Warning>& warnings);
+                        std::span<const Record> fitness, std::vector<Warning>& warnings);
 
 }  // namespace cmap

@@ -136,8 +136,7 @@ void warn_about_points(std::string_view which, const PointBlocks& points, const 
 }
 
 void warn_about_spacing(const SampledSpacing& reference, const NearestField& nearest_in_reference,
-                        const DistanceStats& estimate_to_reference, const EvaluationOptions& options,
-                        std::vector<Warning>& warnings) {
+                        std::span<const Record> fitness, std::vector<Warning>& warnings) {
   // A place anywhere on the surface is 0.4 (grid) to 1.0 (random points) spacings from the next point of the reference.
   constexpr double kOnItsPoints = 0.3, kElsewhere = 2.0;
   std::vector<double> sq_dist;
@@ -147,12 +146,12 @@ void warn_about_spacing(const SampledSpacing& reference, const NearestField& nea
   const double spacings = std::sqrt(upper_median(std::move(sq_dist))) / reference.spacing_m;
   if (!(spacings > kOnItsPoints && spacings < kElsewhere)) return;
   std::vector<double> missed_m;
-  for (std::size_t t = 0; t < options.thresholds_m.size(); ++t) {
-    const bool below = options.thresholds_m[t] < reference.spacing_m;
-    if (below && estimate_to_reference.share_within(t) < 0.5) missed_m.push_back(options.thresholds_m[t]);
+  for (const Record& level : fitness) {
+    const bool below = *level.threshold_m < reference.spacing_m;
+    if (below && *level.value < 0.5) missed_m.push_back(*level.threshold_m);
   }
   // The smallest of many thresholds is below nearly every spacing.
-  const std::size_t n_to_say = options.thresholds_m.size() > 2 ? 2 : 1;
+  const std::size_t n_to_say = fitness.size() > 2 ? 2 : 1;
   if (missed_m.size() < n_to_say) return;
   warnings.push_back(
       {"sparse_reference",

@@ -71,7 +71,7 @@ Evaluation evaluate_by_protocol(PointCloud reference, PointCloud estimate, const
   };
   Eigen::Matrix4d T_ref_est = inputs.T_initial;
   std::optional<Alignment> alignment;
-  std::vector<MetricRecord> before;
+  MetricRecords before;
   if (options.align != "none") {
     timed("scores before", 0.05, [&] { before = evaluate(reference, estimate, plain(options), T_ref_est).metrics; });
     timed("align", 0.1, [&] { alignment = align_estimate(reference, estimate, options, inputs); });
@@ -91,8 +91,8 @@ Evaluation evaluate_by_protocol(PointCloud reference, PointCloud estimate, const
   evaluation.alignment = std::move(alignment);
   evaluation.metrics_before = std::move(before);
   if (band) {
-    band->include(evaluation);
-    evaluation.sensitivity = band->json(options);
+    band->include(evaluation.metrics);
+    evaluation.sensitivity = band->found(options);
   }
   evaluation.stage_seconds.insert(evaluation.stage_seconds.begin(), stages.begin(), stages.end());
   return evaluation;

@@ -42,10 +42,10 @@ void check_threshold(const Requirement& requirement, const EvaluationOptions& op
 }
 
 /// The part of a record that the requirement is about.
-const nlohmann::ordered_json& part_of(const MetricRecord& record, const Requirement& requirement) {
-  if (!requirement.threshold_m) return record.fields;
-  for (const auto& entry : record.fields.at("per_threshold")) {
-    if (entry.at("threshold_m") == *requirement.threshold_m) return entry;
+const Record& part_of(const Record& record, const Requirement& requirement) {
+  if (!requirement.threshold_m) return record;
+  for (const Record& level : record.list("per_threshold")) {
+    if (level.threshold_m == requirement.threshold_m) return level;
   }
   refuse(requirement.text, "no such threshold");
 }
@@ -66,7 +66,7 @@ Requirement parse(const std::string& text) {
   Requirement requirement{text,           find_metric(match[1].str()), std::nullopt, match[2].str(),
                           match[4].str(), number(match[5].str())};
   if (match[6].length() > 0) {
-    if (requirement.metric != nullptr && !is_share(*requirement.metric)) {
+    if (requirement.metric != nullptr && !requirement.metric->share) {
       refuse(text, fmt::format("{} is no share: a bound in % has no meaning", requirement.metric->id));
     }
     requirement.bound /= 100.0;
@@ -83,33 +83,19 @@ void require_computed(const Requirement& requirement, const MetricSelection& sel
   refuse(requirement.text, fmt::format("{} is not computed; add it to --metrics", requirement.metric->id));
 }
 
-/// Decibels of exact colors are null in the record, for JSON knows no infinity, and said in a warning.
-bool is_infinite(const Requirement& requirement, const std::vector<Warning>& warnings) {
-  return (requirement.field.empty() || requirement.field == ".value") &&
-         std::ranges::count(warnings, fmt::format("{}_infinite", requirement.metric->id), &Warning::id) > 0;
-}
-
-RequirementOutcome check(const Requirement& requirement, const std::vector<MetricRecord>& metrics,
-                         const std::vector<Warning>& warnings) {
-  const auto record = std::ranges::find(metrics, requirement.metric, &MetricRecord::info);
-  if (record == metrics.end()) refuse(requirement.text, "the metric was not computed");
-  if (is_infinite(requirement, warnings)) {
-    return {compare(INFINITY, requirement.comparison, requirement.bound), INFINITY};
-  }
-  const auto& part = part_of(*record, requirement);
-  std::string path = requirement.field.empty() ? ".value" : requirement.field;
-  const std::string field = path.substr(1);
-  std::ranges::replace(path, '.', '/');
-  const nlohmann::ordered_json::json_pointer pointer(path);
+/// Infinite decibels, of exact colors, are a value here.
+RequirementOutcome check(const Requirement& requirement, const MetricRecords& metrics) {
+  const Record* record = metrics.find(requirement.metric->id);
+  if (record == nullptr) refuse(requirement.text, "the metric was not computed");
+  const Record& part = part_of(*record, requirement);
+  const std::string field = requirement.field.empty() ? "value" : requirement.field.substr(1);
+  const std::optional<double> value = part.number(field);
   // A metric that has no value at all, for want of color, has no other field either.
-  if (!part.contains(pointer)) {
-    if (part.contains("value") && part.at("value").is_null()) return {false, std::nullopt};
-    refuse(requirement.text, fmt::format("{} has no field {}", requirement.metric->id, field));
+  if (!value && !(part.value && std::isnan(*part.value))) {
+    refuse(requirement.text, fmt::format("{} has no number {}", requirement.metric->id, field));
   }
-  const auto& value = part.at(pointer);
-  if (value.is_null()) return {false, std::nullopt};
-  if (!value.is_number()) refuse(requirement.text, fmt::format("{} is not a number", field));
-  return {compare(value.get<double>(), requirement.comparison, requirement.bound), value.get<double>()};
+  if (!value || std::isnan(*value)) return {false, std::nullopt};
+  return {compare(*value, requirement.comparison, requirement.bound), *value};
 }
 
 }  // namespace
@@ -132,11 +118,11 @@ Requirement parse_map_requirement(const std::string& text, const EvaluationOptio
 }
 
 RequirementOutcome check(const Requirement& requirement, const Evaluation& evaluation) {
-  return check(requirement, evaluation.metrics, evaluation.warnings);
+  return check(requirement, evaluation.metrics);
 }
 
 RequirementOutcome check(const Requirement& requirement, const MapEvaluation& evaluation) {
-  return check(requirement, evaluation.metrics, evaluation.warnings);
+  return check(requirement, evaluation.metrics);
 }
 
 }  // namespace cmap

@@ -1,16 +1,14 @@
 #include "cmap/eval/sensitivity.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "eval/json_number.hpp"
-#include "eval/summed_records.hpp"
+#include "cmap/eval/evaluation.hpp"
 
 namespace cmap {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// Where the estimate's centroid lies in the reference frame.
 Eigen::Vector3d centroid(const PointCloud& estimate, const Eigen::Matrix4d& T_ref_est) {
@@ -40,36 +38,27 @@ std::vector<Eigen::Matrix4d> motions(const EvaluationOptions& options, const Eig
 
 }  // namespace
 
-void SensitivityBand::include(const Evaluation& evaluation) {
-  const auto widen = [&](const MetricRecord& record, std::optional<double> threshold_m, const Json& value) {
-    if (!value.is_number()) return;
-    const double v = value.get<double>();
-    Range& range = ranges_[std::string(record.info->id)].try_emplace(threshold_m, Range{v, v}).first->second;
-    range = {std::min(range.lowest, v), std::max(range.highest, v)};
-  };
-  for (const MetricRecord& record : evaluation.metrics) {
-    if (record.fields.contains("value")) widen(record, std::nullopt, record.fields.at("value"));
-    if (!record.fields.contains("per_threshold")) continue;
-    for (const Json& entry : record.fields.at("per_threshold")) {
-      widen(record, entry.at("threshold_m").get<double>(), entry.at("value"));
+void SensitivityBand::include(const MetricRecords& metrics) {
+  for (const MetricRecord& metric : metrics) {
+    for (const SummedValue& value : values_of(metric.info->id, metric.record)) {
+      if (!std::isfinite(value.value)) continue;
+      const Range alone{value.value, value.value};
+      Range& range = ranges_[value.id].try_emplace(value.threshold_m, alone).first->second;
+      range = {std::min(range.lowest, value.value), std::max(range.highest, value.value)};
     }
   }
 }
 
-Json SensitivityBand::json(const EvaluationOptions& options) const {
-  Json metrics = Json::object();
-  for (const MetricInfo& info : metric_catalog()) {
-    const auto metric = ranges_.find(std::string(info.id));
-    if (metric == ranges_.end()) continue;
-    // The largest threshold first, as in the options' default.
-    for (auto range = metric->second.rbegin(); range != metric->second.rend(); ++range) {
-      add_entry(metrics, info.id, range->first,
-                {{"lowest", json_number(range->second.lowest)}, {"highest", json_number(range->second.highest)}});
+Sensitivity SensitivityBand::found(const EvaluationOptions& options) const {
+  Sensitivity found{options.sensitivity_translation_m, options.sensitivity_rotation_deg, {}};
+  for (const Metric* metric : metric_list()) {
+    const auto ranges = ranges_.find(metric->info.id);
+    if (ranges == ranges_.end()) continue;
+    for (auto range = ranges->second.rbegin(); range != ranges->second.rend(); ++range) {
+      found.ranges.push_back({metric->info.id, range->first, range->second.lowest, range->second.highest});
     }
   }
-  return {{"translation_m", options.sensitivity_translation_m},
-          {"rotation_deg", options.sensitivity_rotation_deg},
-          {"metrics", metrics}};
+  return found;
 }
 
 SensitivityBand sensitivity_band(const PointCloud& reference, const PointCloud& estimate,
@@ -80,7 +69,7 @@ SensitivityBand sensitivity_band(const PointCloud& reference, const PointCloud& 
   const std::vector<Eigen::Matrix4d> all = motions(options, centroid(estimate, T_ref_est));
   for (const Eigen::Matrix4d& motion : all) {
     if (progress) progress("sensitivity", done / static_cast<double>(all.size()));
-    band.include(evaluate(reference, estimate, options, motion * T_ref_est));
+    band.include(evaluate(reference, estimate, options, motion * T_ref_est).metrics);
     ++done;
   }
   return band;

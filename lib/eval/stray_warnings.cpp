@@ -57,12 +57,12 @@ Sums sums_without(std::span<const double> sq_dist, const std::vector<std::size_t
 
 /// The points that decide RMSE or the mean distance, and those that decide what is left without them. Where even the
 /// largest distance taken several times would not, the distances are not looked at.
-Strays deciding_strays(std::span<const double> sq_dist, const DistanceStats& stats) {
+Strays deciding_strays(std::span<const double> sq_dist, const MeanDistances& means) {
   const std::size_t most = most_strays(sq_dist.size());
-  const auto n = static_cast<double>(stats.n), n_most = static_cast<double>(most);
-  if (most == 0 || stats.max_m < kRounding_m ||
-      !decides(n_most * stats.max_m * stats.max_m / (n * stats.mean_sq_m2),
-               n_most * stats.max_m / (n * stats.mean_m))) {
+  const auto n = means.n, n_most = static_cast<double>(most);
+  const double max_m = std::sqrt(std::ranges::max(sq_dist));
+  if (most == 0 || max_m < kRounding_m ||
+      !decides(n_most * max_m * max_m / (n * means.mean_sq_m2), n_most * max_m / (n * means.mean_m))) {
     return {};
   }
   const std::vector<std::size_t> farthest = farthest_slots(sq_dist, most);
@@ -94,14 +94,14 @@ std::string described(const Strays& strays, const NearestPairs& pairs, const cha
                      which);
 }
 
-void warn(const NearestPairs& pairs, const DistanceStats& stats, bool gives_rmse, std::vector<Warning>& warnings) {
-  const Strays strays = deciding_strays(pairs.nearest.sq_dist, stats);
+void warn(const NearestPairs& pairs, const MeanDistances& means, bool gives_rmse, std::vector<Warning>& warnings) {
+  const Strays strays = deciding_strays(pairs.nearest.sq_dist, means);
   if (strays.slots.empty()) return;
   const std::string change =
       gives_rmse
-          ? fmt::format("RMSE is {:.4g} m, not {:.4g} m", strays.rmse_without_m, std::sqrt(stats.mean_sq_m2))
+          ? fmt::format("RMSE is {:.4g} m, not {:.4g} m", strays.rmse_without_m, std::sqrt(means.mean_sq_m2))
           : fmt::format("the mean distance from reference to estimate, which Chamfer adds, is {:.4g} m, not {:.4g} m",
-                        strays.mean_without_m, stats.mean_m);
+                        strays.mean_without_m, means.mean_m);
   warnings.push_back({"stray_points", described(strays, pairs, gives_rmse ? "estimate" : "reference",
                                                 gives_rmse ? "reference" : "estimate") +
                                           " " + change});
@@ -109,8 +109,8 @@ void warn(const NearestPairs& pairs, const DistanceStats& stats, bool gives_rmse
 
 }  // namespace
 
-void warn_about_strays(const MapPair& pair, const DistanceStats& estimate_to_reference,
-                       const DistanceStats& reference_to_estimate, std::vector<Warning>& warnings) {
+void warn_about_strays(const MapPair& pair, const MeanDistances& estimate_to_reference,
+                       const MeanDistances& reference_to_estimate, std::vector<Warning>& warnings) {
   warn(pair.estimate_to_reference(), estimate_to_reference, true, warnings);
   warn(pair.reference_to_estimate(), reference_to_estimate, false, warnings);
 }

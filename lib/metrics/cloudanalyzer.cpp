@@ -9,11 +9,6 @@
 namespace cmap {
 namespace {
 
-double share_within(std::span<const double> sq_dist, double threshold_m) {
-  const auto n = std::ranges::count_if(sq_dist, [&](double sq) { return std::sqrt(sq) <= threshold_m; });
-  return static_cast<double>(n) / static_cast<double>(sq_dist.size());
-}
-
 /// The voxel with its covariance's eigenvalues raised to 1e-6 m^2.
 Gaussian raised(Gaussian voxel) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(voxel.covariance());
@@ -31,11 +26,17 @@ double raised_distance(const GaussianPair& pair) {
 
 }  // namespace
 
+double cloudanalyzer_share_within(std::span<const double> sq_dist, double threshold_m) {
+  const auto n = std::ranges::count_if(sq_dist, [&](double sq) { return std::sqrt(sq) <= threshold_m; });
+  return static_cast<double>(n) / static_cast<double>(sq_dist.size());
+}
+
 CloudAnalyzerCurve cloudanalyzer_curve(std::span<const double> sq_dist_estimate,
                                        std::span<const double> sq_dist_reference) {
   CloudAnalyzerCurve curve;
   for (double t : kCloudAnalyzerThresholds_m) {
-    const double precision = share_within(sq_dist_estimate, t), recall = share_within(sq_dist_reference, t);
+    const double precision = cloudanalyzer_share_within(sq_dist_estimate, t);
+    const double recall = cloudanalyzer_share_within(sq_dist_reference, t);
     curve.scores.push_back({t, precision, recall, f_score(precision, recall)});
   }
   for (std::size_t i = 1; i < curve.scores.size(); ++i) {
@@ -77,7 +78,7 @@ CloudAnalyzerStructure cloudanalyzer_structure(std::span<const GaussianPair> pai
     ++n;
     sum += std::isnan(variations[i]) ? 0.0 : variations[i];
   }
-  return {average_wasserstein(distances).mean_m, sum / static_cast<double>(n), distances.size(), n};
+  return {mean_distance(distances), sum / static_cast<double>(n), distances.size(), n};
 }
 
 }  // namespace cmap

@@ -4,10 +4,9 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "cmap/core/exact_sum.hpp"
 #include "cmap/core/parallel.hpp"
-#include "cmap/metrics/order_statistics.hpp"
 #include "metrics/voxels.hpp"
 
 namespace cmap {
@@ -95,18 +94,10 @@ std::vector<VoxelDistance> wasserstein_distances(std::span<const GaussianPair> p
   return distances;
 }
 
-AverageWasserstein average_wasserstein(std::span<const VoxelDistance> voxels) {
-  std::vector<double> distances;
-  for (const VoxelDistance& voxel : voxels) distances.push_back(voxel.distance_m);
-  std::vector<double> shares(21);
-  for (std::size_t i = 0; i < shares.size(); ++i) shares[i] = static_cast<double>(i) / 20.0;
-
-  AverageWasserstein average;
-  average.n_voxels = distances.size();
-  average.mean_m = std::accumulate(distances.begin(), distances.end(), 0.0) / static_cast<double>(distances.size());
-  average.quantiles_m = quantiles(distances, shares);
-  average.median_m = average.quantiles_m[10];
-  return average;
+double mean_distance(std::span<const VoxelDistance> voxels) {
+  ExactSum sum;
+  for (const VoxelDistance& voxel : voxels) sum.add(voxel.distance_m);
+  return sum.value() / static_cast<double>(voxels.size());
 }
 
 }  // namespace cmap

@@ -12,7 +12,6 @@
 #include "cmap/core/round_number.hpp"
 #include "cmap/core/spelling.hpp"
 #include "cmap/metrics/color_consistency.hpp"
-#include "cmap/metrics/color_distance.hpp"
 #include "cmap/metrics/wasserstein.hpp"
 #include "cmap/spatial/voxel_map.hpp"
 
@@ -98,11 +97,11 @@ Layer voxel_layer(const IndexedMap& map, std::string title, ColorMap color_map, 
 Layer consistency_layer(const Evaluation& evaluation, const LayerOptions& options) {
   const IndexedMap& map = evaluation.pair.estimate;
   if (!map.has_color()) throw UnsupportedError("layer ccs: the estimate needs color");
-  const double voxel_m = evaluation.options.ccs_voxel_m;
+  const MetricOptions& o = evaluation.options;
+  const double voxel_m = o.ccs_voxel_m;
   VoxelValues voxels(map, voxel_m);
-  for (const auto& [index, trace] :
-       voxel_color_spreads(map, voxel_m, evaluation.options.ccs_min_points, evaluation.options.ccs_singletons)) {
-    voxels.set(index, trace);
+  for (const VoxelColors& voxel : voxel_colors(map, voxel_m)) {
+    if (is_in_mean(voxel, o.ccs_singletons, o.ccs_min_points)) voxels.set(voxel.index, voxel.trace);
   }
   return voxel_layer(map, fmt::format("Color spread in voxels of {} m", voxel_m), ColorMap::kInferno, "unit RGB²",
                      options, voxels);
@@ -169,10 +168,10 @@ Layer recall_layer(const Evaluation& evaluation) {
 }
 
 std::string caption_of(const Evaluation& evaluation, std::string_view metric) {
-  const MetricRecord* record = evaluation.find(metric);
-  if (record == nullptr || !record->fields.contains("value") || !record->fields.at("value").is_number()) return "";
-  const double value = record->fields.at("value").get<double>();
-  const MetricInfo& info = *record->info;
+  const Record* record = evaluation.metrics.find(metric);
+  if (record == nullptr || !std::isfinite(record->value.value_or(NAN))) return "";
+  const double value = *record->value;
+  const MetricInfo& info = *find_metric(metric);
   if (info.id == "local_color_recall") return fmt::format("{} {:.1f} %", info.symbol, 100.0 * value);
   return fmt::format("{} {:.4g}{}", info.symbol, value, info.unit == "1" ? "" : fmt::format(" {}", info.unit));
 }
@@ -198,7 +197,7 @@ Layer delta_e_layer(const Evaluation& evaluation, const LayerOptions& options) {
   require_color(evaluation, "delta-e");
   const NearestPairs pairs = evaluation.pair.estimate_to_reference();
   return heat_map(pairs.from.index.points, "CIEDE2000", ColorMap::kInferno, "", options,
-                  [&](std::size_t slot) { return delta_e(pairs, slot); });
+                  [&](std::size_t slot) { return pairs.delta_e(slot); });
 }
 
 Layer layer_of(const Evaluation& evaluation, std::string_view name, const LayerOptions& options) {

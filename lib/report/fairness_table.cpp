@@ -22,7 +22,8 @@ std::string span_text(const MetricInfo& info, const Json& from, const Json& to) 
 /// One line for each value of these metrics, in the catalog's order.
 std::string lines(const Json& metrics, const std::function<std::string(const MetricInfo&, const Json&)>& text_of) {
   std::string result;
-  for (const MetricInfo& info : metric_catalog()) {
+  for (const Metric* known : metric_list()) {
+    const MetricInfo& info = known->info;
     if (!metrics.contains(info.id)) continue;
     const Json& metric = metrics.at(info.id);
     if (!metric.contains("per_threshold")) {

@@ -57,7 +57,7 @@ std::string inlined(const Json& json) {
   return text;
 }
 
-Json definitions(const std::vector<MetricRecord>& metrics) {
+Json definitions(const MetricRecords& metrics) {
   Json list = Json::array();
   for (const MetricRecord& record : metrics) {
     const MetricInfo& metric = *record.info;

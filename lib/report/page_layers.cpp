@@ -64,12 +64,13 @@ Json color_distance_layer(const Distribution& color_distances) {
 Json recall_layer(const LocalColorRecall& recall) {
   std::array<std::uint64_t, kRecallClassLooks.size()> n{};
   for (RecallClass c : recall.classes) ++n[static_cast<std::size_t>(c)];
+  const std::uint64_t n_colored = recall.classes.size() - n[static_cast<std::size_t>(RecallClass::kNoColor)];
   Json classes = Json::array();
   for (std::size_t c = 0; c < n.size(); ++c) {
     const bool counts = static_cast<RecallClass>(c) != RecallClass::kNoColor;
     if (!counts && n[c] == 0) continue;
     const RecallClassLook& look = kRecallClassLooks[c];
-    const Json share = counts ? Json(static_cast<double>(n[c]) / static_cast<double>(recall.n_reference)) : Json();
+    const Json share = counts ? Json(static_cast<double>(n[c]) / static_cast<double>(n_colored)) : Json();
     classes.push_back({{"label", look.label},
                        {"color", {look.color[0], look.color[1], look.color[2]}},
                        {"points", n[c]},

@@ -10,6 +10,7 @@
 #include "cmap/align/align.hpp"
 #include "cmap/core/version.hpp"
 #include "cmap/io/transform_file.hpp"
+#include "report/record_json.hpp"
 #include "report/table_text.hpp"
 
 namespace cmap {
@@ -39,7 +40,7 @@ Json input_json(const InputDescription& input) {
 Json before_json(const Evaluation& evaluation) {
   if (evaluation.metrics_before.empty()) return nullptr;
   Json before = Json::object();
-  for (const MetricRecord& record : evaluation.metrics_before) before[record.info->id] = record.fields;
+  for (const MetricRecord& metric : evaluation.metrics_before) before[metric.info->id] = record_json(metric.record);
   return before;
 }
 
@@ -69,12 +70,18 @@ Json alignment_record(const Evaluation& evaluation) {
           {"registration", registration_json(evaluation)}};
 }
 
-Json metric_json(const MetricRecord& record) {
-  Json json = record.fields;
-  json["unit"] = record.info->unit;
-  json["better"] = record.info->better.empty() ? Json(nullptr) : Json(record.info->better);
-  json["symbol"] = record.info->symbol;
+Json metric_json(const MetricRecord& metric) {
+  Json json = record_json(metric.record);
+  json["unit"] = metric.info->unit;
+  json["better"] = metric.info->better.empty() ? Json(nullptr) : Json(metric.info->better);
+  json["symbol"] = metric.info->symbol;
   if (!json.contains("parameters")) json["parameters"] = Json::object();
+  return json;
+}
+
+Json peers_json(const std::vector<PeerRecord>& peers) {
+  Json json = Json::object();
+  for (const PeerRecord& peer : peers) json[peer.tool] = peer.record ? record_json(*peer.record) : Json(nullptr);
   return json;
 }
 
@@ -135,9 +142,9 @@ void warn_of_gray(Json& warnings, const InputDescription& reference, const Input
 
 Json report_head() { return {{"schema", kReportSchema}, {"tool", {{"name", "cmap_eval"}, {"version", kVersion}}}}; }
 
-Json metrics_json(const std::vector<MetricRecord>& records) {
+Json metrics_json(const MetricRecords& records) {
   Json metrics = Json::object();
-  for (const MetricRecord& record : records) metrics[record.info->id] = metric_json(record);
+  for (const MetricRecord& metric : records) metrics[metric.info->id] = metric_json(metric);
   return metrics;
 }
 
@@ -167,10 +174,10 @@ Json make_report(const InputDescription& reference, const InputDescription& esti
   report["parameters"] = to_json(evaluation.options);
   report["alignment"] = alignment_record(evaluation);
   report["metrics"] = metrics_json(evaluation.metrics);
-  if (!evaluation.aliases.is_null()) report["aliases"] = evaluation.aliases;
-  if (!evaluation.sensitivity.is_null()) report["sensitivity"] = evaluation.sensitivity;
-  if (!evaluation.intervals.is_null()) report["intervals"] = evaluation.intervals;
-  if (!evaluation.unobserved.is_null()) report["unobserved"] = evaluation.unobserved;
+  if (!evaluation.peers.empty()) report["aliases"] = peers_json(evaluation.peers);
+  if (evaluation.sensitivity) report["sensitivity"] = sensitivity_json(*evaluation.sensitivity);
+  if (evaluation.intervals) report["intervals"] = intervals_json(*evaluation.intervals);
+  if (evaluation.unobserved) report["unobserved"] = observed_json(*evaluation.unobserved, evaluation.options);
   report["warnings"] = Json::array();
   add_input_warnings(report["warnings"], "reference", reference);
   add_input_warnings(report["warnings"], "estimate", estimate);

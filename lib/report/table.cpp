@@ -158,7 +158,8 @@ std::string format_table(const Json& report) {
   std::string table = input_lines(report.at("inputs"));
   std::string_view group;
   bool thresholds_shown = false;
-  for (const MetricInfo& info : metric_catalog()) {
+  for (const Metric* known : metric_list()) {
+    const MetricInfo& info = known->info;
     if (!report.at("metrics").contains(info.id)) continue;
     if (info.group != group) table += fmt::format("\n{}\n", info.group == "mme" ? "entropy" : info.group);
     group = info.group;

@@ -33,7 +33,7 @@ bool is_infinite(const Json& report, std::string_view id) {
 }
 
 std::string shown_unit(const MetricInfo& info) {
-  if (is_share(info)) return "%";
+  if (info.share) return "%";
   return info.unit == "1" ? "" : std::string(info.unit);
 }
 

@@ -19,7 +19,7 @@ bool is_infinite(const nlohmann::ordered_json& report, std::string_view id);
 
 /// A value as its metric is shown.
 inline std::string shown(const MetricInfo& info, const nlohmann::ordered_json& value) {
-  return is_share(info) ? hundredths(value) : digits(value);
+  return info.share ? hundredths(value) : digits(value);
 }
 
 /// The unit beside it; none for ratios.

@@ -46,14 +46,12 @@ class Conformance : public testing::TestWithParam<std::string> {
   }
 
   static void expect_metrics(const Json& expected, const Evaluation& found) {
-    EXPECT_EQ(expected.at("metrics").size(), metric_catalog().size()) << "every metric has an expected record";
+    EXPECT_EQ(expected.at("metrics").size(), metric_list().size()) << "every metric has an expected record";
     for (const auto& [id, record] : expected.at("metrics").items()) {
       SCOPED_TRACE(id);
-      const MetricRecord* metric = found.find(id);
-      ASSERT_NE(metric, nullptr);
       // A metric that has nothing at all is null in the set and a null value in a report.
       const Json wanted = record.is_null() ? Json{{"value", nullptr}} : record;
-      test::RecordComparison(kTolerance, worst_).compare(id, wanted, metric->fields);
+      test::RecordComparison(kTolerance, worst_).compare(id, wanted, test::fields_of(found, id));
     }
   }
 

@@ -26,13 +26,13 @@ class TumFr1 : public ::testing::Test {
       GTEST_SKIP() << "no real data: " << shared_folder() / "data/tum_fr1"
                    << " or ../golden is missing; set CMAP_SHARED_DIR";
   }
-  static const Json& fields(const std::string& metric) { return evaluation_->find(metric)->fields; }
+  static Json fields(const std::string& metric) { return fields_of(*evaluation_, metric); }
 
   static inline std::optional<Evaluation> evaluation_;
 };
 
 /// The number of a report that a key of golden/tum_fr1.json stands for: "cd", "fitness@0.05".
-const Json& golden_number(const Evaluation& evaluation, const std::string& key) {
+Json golden_number(const Evaluation& evaluation, const std::string& key) {
   static const std::map<std::string, std::pair<std::string, std::string>> kPlaces{
       {"chamfer_l1_sum", {"chamfer", "/value"}},
       {"chamfer_l1_mean", {"chamfer", "/variants/l1_mean"}},
@@ -55,7 +55,7 @@ const Json& golden_number(const Evaluation& evaluation, const std::string& key) 
       {"ccs_voxels", {"color_consistency", "/n_voxels"}}};
   const std::size_t at = key.find('@');
   const auto& [metric, path] = kPlaces.at(key.substr(0, at));
-  const Json& record = evaluation.find(metric)->fields;
+  const Json record = fields_of(evaluation, metric);
   if (at == std::string::npos) return record.at(Json::json_pointer(path));
   for (const Json& entry : record.at("per_threshold")) {
     if (entry.at("threshold_m") == std::stod(key.substr(at + 1))) return entry.at(Json::json_pointer(path));
@@ -89,13 +89,13 @@ TEST(AuthorsTool, EveryNumberOfItsReport) {
   };
   test::WorstDifferences worst;
   test::RecordComparison comparison({1e-9, 0.0}, worst);
-  comparison.compare("alias", golden.at("metrics"), evaluated().aliases.at("color-map-evaluation"));
+  comparison.compare("alias", golden.at("metrics"), peer_fields(evaluated(), "color-map-evaluation"));
   options = EvaluationOptions{};  // whose definitions are the same
   const Evaluation ours = evaluated();
-  comparison.compare("CD", golden.at("metrics").at("CD"), ours.find("color_distance")->fields.at("value"));
-  comparison.compare("CF", golden.at("metrics").at("CF_dB"), ours.find("color_fidelity")->fields.at("value"));
-  comparison.compare("CCS", golden.at("metrics").at("CCS"), ours.find("color_consistency")->fields.at("value"));
-  comparison.compare("CCS", golden.at("CCS_exclude"), ours.find("color_consistency")->fields.at("exclude"));
+  comparison.compare("CD", golden.at("metrics").at("CD"), fields_of(ours, "color_distance").at("value"));
+  comparison.compare("CF", golden.at("metrics").at("CF_dB"), fields_of(ours, "color_fidelity").at("value"));
+  comparison.compare("CCS", golden.at("metrics").at("CCS"), fields_of(ours, "color_consistency").at("value"));
+  comparison.compare("CCS", golden.at("CCS_exclude"), fields_of(ours, "color_consistency").at("exclude"));
   worst.print("Color-Map-Evaluation");
 }
 
@@ -118,7 +118,7 @@ Json peers() { return test::read_json(shared_folder() / "golden/peers_tum_fr1.js
 
 TEST_F(TumFr1, WhatMapEvalPrints) {
   const Json golden = peers().at("mapeval");
-  const Json& found = evaluation_->aliases.at("mapeval");
+  const Json found = peer_fields(*evaluation_, "mapeval");
   ASSERT_EQ(golden.at("AC").size(), found.at("per_threshold").size());
   for (std::size_t t = 0; t < golden.at("AC").size(); ++t) {
     const Json& level = found.at("per_threshold")[t];
@@ -138,7 +138,7 @@ TEST_F(TumFr1, WhatMapEvalPrints) {
 
 TEST_F(TumFr1, WhatOpen3dReturns) {
   const Json golden = peers().at("open3d");
-  const Json& found = evaluation_->aliases.at("open3d");
+  const Json found = peer_fields(*evaluation_, "open3d");
   for (const Json& expected : golden.at("at")) {
     const auto level = std::find_if(found.at("per_threshold").begin(), found.at("per_threshold").end(),
                                     [&](const Json& l) { return l.at("threshold_m") == expected.at("threshold_m"); });
@@ -155,14 +155,14 @@ TEST_F(TumFr1, WhatOpen3dReturns) {
 
 TEST_F(TumFr1, WhatCloudCompareLogs) {
   const Json golden = peers().at("cloudcompare");
-  const Json& found = evaluation_->aliases.at("cloudcompare");
+  const Json found = peer_fields(*evaluation_, "cloudcompare");
   expect_printed(found.at("mean"), golden.at("mean"), 5, "cloudcompare mean");  // six decimals
   expect_printed(found.at("std"), golden.at("std"), 5, "cloudcompare std");
 }
 
 TEST_F(TumFr1, WhatPcErrorPrints) {
   const Json golden = peers().at("mpeg_pc_error");
-  const Json& found = evaluation_->aliases.at("mpeg");
+  const Json found = peer_fields(*evaluation_, "mpeg");
   constexpr int kDigits = 9;
   for (const char* direction : {"reference_to_estimate", "estimate_to_reference"}) {
     const Json& ours = found.at(direction);
@@ -200,15 +200,15 @@ TEST_F(TumFr1, FlannAgreesExceptOnTies) {
                              count_ties(evaluation_->pair.nearest_in_estimate, flann.pair.nearest_in_estimate);
   std::cout << "  " << n_ties << " ties\n";
   test::WorstDifferences worst;
-  for (const MetricRecord& record : evaluation_->metrics) {
-    const std::string id(record.info->id);
+  for (const MetricRecord& metric : evaluation_->metrics) {
+    const std::string id(metric.info->id);
     if (id == "color_distance" || id == "color_fidelity") continue;
-    test::RecordComparison({1e-9, 0.0}, worst).compare(id, record.fields, flann.find(id)->fields);
+    test::RecordComparison({1e-9, 0.0}, worst).compare(id, record_json(metric.record), fields_of(flann, id));
   }
   worst.print("FLANN");
   // A tie changes one term of one mean by sqrt 3 at most.
   const double n_points = fields("color_distance").at("n_estimate");
-  EXPECT_NEAR(flann.find("color_distance")->fields.at("value"), fields("color_distance").at("value").get<double>(),
+  EXPECT_NEAR(fields_of(flann, "color_distance").at("value"), fields("color_distance").at("value").get<double>(),
               1e-12 + static_cast<double>(n_ties) * std::numbers::sqrt3 / n_points);
 }
 

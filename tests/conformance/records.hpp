@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -14,6 +15,7 @@
 
 #include "cmap/core/error.hpp"
 #include "cmap/eval/evaluation.hpp"
+#include "report/record_json.hpp"
 
 namespace cmap::test {
 
@@ -95,14 +97,24 @@ class RecordComparison {
   WorstDifferences& worst_;
 };
 
+/// A metric's record as reports hold it. Throws std::out_of_range for one that was not computed.
+inline Json fields_of(const Evaluation& evaluation, std::string_view id) {
+  return record_json(evaluation.metrics.at(id));
+}
+
+/// What another tool would print.
+inline Json peer_fields(const Evaluation& evaluation, std::string_view tool) {
+  return record_json(*std::ranges::find(evaluation.peers, tool, &PeerRecord::tool)->record);
+}
+
 /// The records of two evaluations that should be one.
 inline void expect_same_records(const Evaluation& expected, const Evaluation& found, Tolerance tolerance,
                                 WorstDifferences& worst) {
   ASSERT_EQ(expected.metrics.size(), found.metrics.size());
   ASSERT_FALSE(expected.metrics.empty());
-  for (std::size_t m = 0; m < expected.metrics.size(); ++m) {
-    const std::string id(expected.metrics[m].info->id);
-    RecordComparison(tolerance, worst).compare(id, expected.metrics[m].fields, found.metrics[m].fields);
+  for (const MetricRecord& metric : expected.metrics) {
+    const std::string id(metric.info->id);
+    RecordComparison(tolerance, worst).compare(id, record_json(metric.record), fields_of(found, id));
   }
 }
 

@@ -19,32 +19,32 @@ using test::uniform;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-/// The values of a report's records by "id" and "id@threshold".
-std::map<std::string, double> reported(const Evaluation& evaluation) {
-  std::map<std::string, double> values;
-  for (const MetricRecord& record : evaluation.metrics) {
-    const std::string id(record.info->id);
-    if (record.fields.contains("value") && record.fields.at("value").is_number())
-      values[id] = record.fields.at("value");
-    if (!record.fields.contains("per_threshold")) continue;
-    for (const auto& entry : record.fields.at("per_threshold")) {
-      if (entry.at("value").is_number())
-        values[fmt::format("{}@{}", id, entry.at("threshold_m").get<double>())] = entry.at("value");
-    }
+/// Values by "id" and "id@threshold".
+using Values = std::map<std::string, double>;
+
+void add_finite(Values& values, const SummedValue& v) {
+  if (!std::isfinite(v.value)) return;
+  values[v.threshold_m ? fmt::format("{}@{}", v.id, *v.threshold_m) : std::string(v.id)] = v.value;
+}
+
+/// Of the records.
+Values reported(const Evaluation& evaluation) {
+  Values values;
+  for (const MetricRecord& metric : evaluation.metrics) {
+    for (const SummedValue& v : values_of(metric.info->id, metric.record)) add_finite(values, v);
   }
   return values;
 }
 
 /// The same of sums over all of the blocks.
-std::map<std::string, double> summed(const BlockSums& blocks) {
-  std::map<std::string, double> values;
+Values summed(const BlockSums& blocks, const MetricOptions& options) {
+  Values values;
   const std::vector<double> once(blocks.keys.size(), 1.0);
-  for (const SummedValue& v : values_of(totals_of(blocks.sums, once))) {
-    if (!std::isfinite(v.value)) continue;
-    values[v.threshold_m ? fmt::format("{}@{}", v.id, *v.threshold_m) : std::string(v.id)] = v.value;
-  }
+  for (const SummedValue& v : MetricFormulas(blocks.sums, MetricSettings(options)).values(once)) add_finite(values, v);
   return values;
 }
+
+const MetricSettings kSettings{MetricOptions{}};
 
 Evaluation evaluated_with_blocks() {
   EvaluationOptions options = options_for({"all"});
@@ -57,11 +57,11 @@ Evaluation evaluated_with_blocks() {
   return evaluate(test::painted_sheet(4000, 1), test::painted_sheet(3000, 2), options);
 }
 
-/// The records are computed by other code, in other orders of summation.
+/// Blocks are rounded to double each, the whole once.
 TEST(Bootstrap, SumsOverAllBlocksGiveTheValuesOfTheReport) {
   const Evaluation evaluation = evaluated_with_blocks();
-  std::map<std::string, double> expected = reported(evaluation);
-  const std::map<std::string, double> found = summed(block_sums_from(evaluation.intervals.at("blocks")));
+  Values expected = reported(evaluation);
+  const Values found = summed(evaluation.intervals->blocks, evaluation.options);
   for (const char* no_mean_nor_share : {"hausdorff", "point_spacing"}) expected.erase(no_mean_nor_share);
   ASSERT_EQ(found.size(), expected.size());
   for (const auto& [name, value] : expected) {
@@ -72,12 +72,12 @@ TEST(Bootstrap, SumsOverAllBlocksGiveTheValuesOfTheReport) {
 
 TEST(Bootstrap, EveryIntervalHoldsItsValue) {
   const Evaluation evaluation = evaluated_with_blocks();
-  for (const Interval& v : bootstrap(block_sums_from(evaluation.intervals.at("blocks")), {})) {
+  for (const Interval& v : evaluation.intervals->metrics) {
     EXPECT_LE(v.lower, v.value) << v.id;
     EXPECT_GE(v.upper, v.value) << v.id;
     EXPECT_LT(v.lower, v.upper) << v.id;
   }
-  EXPECT_FALSE(evaluation.intervals.at("metrics").contains("hausdorff"));
+  EXPECT_EQ(std::ranges::count(evaluation.intervals->metrics, "hausdorff", &Interval::id), 0);
 }
 
 /// Blocks with these means of distance, ten points each.
@@ -85,9 +85,14 @@ BlockSums blocks_of(const std::vector<double>& means) {
   BlockSums blocks{1.0, {}, {means.size(), {}}};
   for (std::size_t i = 0; i < means.size(); ++i) {
     blocks.keys.push_back({static_cast<std::int64_t>(i), 0, 0});
-    for (const char* map : {"estimate.", "reference."}) {
-      blocks.sums.column(fmt::format("{}n", map))[i] = 10.0;
-      blocks.sums.column(fmt::format("{}distance", map))[i] = 10.0 * means[i];
+    for (const char* map : {"estimate", "reference"}) {
+      const auto column = [&](const char* name) -> std::vector<double>& {
+        return blocks.sums.columns[fmt::format("chamfer.{}.{}", map, name)];
+      };
+      column("n").push_back(10.0);
+      column("distance").push_back(10.0 * means[i]);
+      column("sq_distance").push_back(10.0 * means[i] * means[i]);
+      column("truncated").push_back(10.0 * means[i]);
     }
   }
   return blocks;
@@ -98,7 +103,7 @@ const Interval& chamfer_of(const std::vector<Interval>& intervals) {
 }
 
 TEST(Bootstrap, BlocksThatAreAlikeLeaveNoDoubt) {
-  const std::vector<Interval> intervals = bootstrap(blocks_of({0.5, 0.5, 0.5}), {});
+  const std::vector<Interval> intervals = bootstrap(blocks_of({0.5, 0.5, 0.5}), kSettings, {});
   EXPECT_EQ(chamfer_of(intervals).value, 1.0);
   EXPECT_EQ(chamfer_of(intervals).lower, 1.0);
   EXPECT_EQ(chamfer_of(intervals).upper, 1.0);
@@ -107,11 +112,11 @@ TEST(Bootstrap, BlocksThatAreAlikeLeaveNoDoubt) {
 /// Of two blocks a replicate draws both with probability 1/2, and one of them twice with 1/4 each: the percentiles of
 /// Chamfer distances 0, 1 and 2 by hand.
 TEST(Bootstrap, TwoBlocksByHand) {
-  const Interval all = chamfer_of(bootstrap(blocks_of({0.0, 1.0}), {.n_replicates = 2000}));
+  const Interval all = chamfer_of(bootstrap(blocks_of({0.0, 1.0}), kSettings, {.n_replicates = 2000}));
   EXPECT_EQ(all.lower, 0.0);
   EXPECT_EQ(all.value, 1.0);
   EXPECT_EQ(all.upper, 2.0);
-  const Interval middle = chamfer_of(bootstrap(blocks_of({0.0, 1.0}), {.n_replicates = 2000, .level = 0.4}));
+  const Interval middle = chamfer_of(bootstrap(blocks_of({0.0, 1.0}), kSettings, {.n_replicates = 2000, .level = 0.4}));
   EXPECT_EQ(middle.lower, 1.0);  // a quarter lies below, 30 % are cut off
   EXPECT_EQ(middle.upper, 1.0);
 }
@@ -128,9 +133,9 @@ TEST(Bootstrap, CoversTheTruthAtItsLevel) {
       better[i] = means[i] - 0.1 * uniform(random);  // on average 0.05 a direction
     }
     const BootstrapOptions options{.n_replicates = 200, .seed = 1000u * static_cast<unsigned>(trial)};
-    const Interval found = chamfer_of(bootstrap(blocks_of(means), options));
+    const Interval found = chamfer_of(bootstrap(blocks_of(means), kSettings, options));
     covered += found.lower <= 1.0 && 1.0 <= found.upper ? 1 : 0;
-    const Interval difference = chamfer_of(bootstrap_difference(blocks_of(means), blocks_of(better), options));
+    const Interval difference = chamfer_of(bootstrap_difference(blocks_of(means), blocks_of(better), kSettings, options));
     difference_covered += difference.lower <= -0.1 && -0.1 <= difference.upper ? 1 : 0;
     EXPECT_LT(difference.upper - difference.lower, 0.3 * (found.upper - found.lower)) << "what both share cancels";
   }
@@ -142,18 +147,18 @@ TEST(Bootstrap, DifferencesAreTakenBlockByBlock) {
   BlockSums a = blocks_of({0.25, 0.75, 0.5});
   BlockSums b = blocks_of({0.25, 0.75, 0.5});
   b.keys = {{1, 0, 0}, {2, 0, 0}, {3, 0, 0}};  // one block further
-  const Interval same = chamfer_of(bootstrap_difference(a, a, {}));
+  const Interval same = chamfer_of(bootstrap_difference(a, a, kSettings, {}));
   EXPECT_EQ(same.lower, 0.0);
   EXPECT_EQ(same.upper, 0.0);
-  const Interval moved = chamfer_of(bootstrap_difference(a, b, {}));
+  const Interval moved = chamfer_of(bootstrap_difference(a, b, kSettings, {}));
   EXPECT_EQ(moved.value, 0.0);
   EXPECT_LT(moved.lower, 0.0) << "other blocks, so that nothing cancels";
   b.block_m = 2.0;
-  EXPECT_THROW(bootstrap_difference(a, b, {}), std::invalid_argument);
+  EXPECT_THROW(bootstrap_difference(a, b, kSettings, {}), std::invalid_argument);
 }
 
 TEST(Bootstrap, TheSameForAnyNumberOfThreads) {
-  const auto intervals = [] { return evaluated_with_blocks().intervals.dump(); };
+  const auto intervals = [] { return intervals_json(*evaluated_with_blocks().intervals).dump(); };
   const std::string all = intervals();
   const ThreadLimit one(1);
   EXPECT_EQ(intervals(), all);
@@ -161,14 +166,14 @@ TEST(Bootstrap, TheSameForAnyNumberOfThreads) {
 
 TEST(Bootstrap, BlocksComeBackFromAReport) {
   const BlockSums blocks = blocks_of({0.1, 0.2});
-  const BlockSums again = block_sums_from(to_json(blocks));
+  const BlockSums again = block_sums_from(block_sums_json(blocks));
   EXPECT_EQ(again.keys, blocks.keys);
   EXPECT_EQ(again.block_m, blocks.block_m);
   EXPECT_EQ(again.sums.columns, blocks.sums.columns);
 }
 
 TEST(Bootstrap, DamagedBlocksAreRefused) {
-  const nlohmann::ordered_json good = to_json(blocks_of({0.1, 0.2}));
+  const nlohmann::ordered_json good = block_sums_json(blocks_of({0.1, 0.2}));
   const auto refused = [&](const std::function<void(nlohmann::ordered_json&)>& damage) {
     nlohmann::ordered_json bad = good;
     damage(bad);
@@ -176,7 +181,7 @@ TEST(Bootstrap, DamagedBlocksAreRefused) {
   };
   EXPECT_THAT(refused([](auto& json) { json.erase("keys"); }), HasSubstr("damaged"));
   EXPECT_THAT(refused([](auto& json) { json["keys"] = 7; }), HasSubstr("damaged"));
-  EXPECT_THAT(refused([](auto& json) { json["sums"]["estimate.n"].push_back(1.0); }), HasSubstr("damaged"));
+  EXPECT_THAT(refused([](auto& json) { json["sums"]["chamfer.estimate.n"].push_back(1.0); }), HasSubstr("damaged"));
   EXPECT_THAT(refused([](auto& json) { std::swap(json["keys"][0], json["keys"][1]); }), HasSubstr("damaged"));
 }
 
@@ -190,8 +195,8 @@ TEST(Bootstrap, FewBlocksGiveAWarning) {
 
 TEST(Bootstrap, NobodyAskedNothingIsThere) {
   const Evaluation evaluation = evaluate(test::painted_sheet(100, 1), test::painted_sheet(100, 2), {});
-  EXPECT_TRUE(evaluation.intervals.is_null());
-  EXPECT_TRUE(evaluation.unobserved.is_null());
+  EXPECT_FALSE(evaluation.intervals.has_value());
+  EXPECT_FALSE(evaluation.unobserved.has_value());
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -13,6 +14,7 @@
 #include "cmap/core/error.hpp"
 #include "cmap/eval/evaluation.hpp"
 #include "core/refusal.hpp"
+#include "report/record_json.hpp"
 #include "spatial/clouds.hpp"
 
 namespace cmap::test {
@@ -41,6 +43,26 @@ inline std::vector<std::string> warning_ids(const std::vector<Warning>& warnings
   std::vector<std::string> ids;
   for (const Warning& warning : warnings) ids.push_back(warning.id);
   return ids;
+}
+
+/// A metric's record as reports hold it; null where it was not computed.
+inline nlohmann::ordered_json fields_of(const MetricRecords& metrics, std::string_view id) {
+  const Record* record = metrics.find(id);
+  return record == nullptr ? nlohmann::ordered_json() : record_json(*record);
+}
+
+/// All records by their metrics.
+inline nlohmann::ordered_json fields_of(const MetricRecords& metrics) {
+  nlohmann::ordered_json all;
+  for (const MetricRecord& metric : metrics) all[metric.info->id] = record_json(metric.record);
+  return all;
+}
+
+/// What another tool would print; null where the maps have not what it needs.
+inline nlohmann::ordered_json peer_fields(const Evaluation& evaluation, std::string_view tool) {
+  const auto peer = std::ranges::find(evaluation.peers, tool, &PeerRecord::tool);
+  if (peer == evaluation.peers.end()) throw std::out_of_range("no record of that tool");
+  return peer->record ? record_json(*peer->record) : nlohmann::ordered_json();
 }
 
 /// No warning.

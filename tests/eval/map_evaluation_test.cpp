@@ -8,6 +8,7 @@
 namespace cmap {
 namespace {
 
+using test::fields_of;
 using test::kNone;
 using test::options_for;
 using test::painted_sheet;
@@ -22,10 +23,6 @@ std::vector<std::string> ids_of(const MapEvaluation& evaluation) {
   std::vector<std::string> ids;
   for (const MetricRecord& record : evaluation.metrics) ids.emplace_back(record.info->id);
   return ids;
-}
-
-Json fields_of(const std::vector<MetricRecord>& metrics, std::string_view id) {
-  return std::ranges::find(metrics, id, [](const MetricRecord& record) { return record.info->id; })->fields;
 }
 
 TEST(EvaluateMap, GivesWhatNeedsNoReference) {
@@ -57,11 +54,11 @@ TEST(EvaluateMap, AgreesWithThePair) {
   const MapEvaluation alone = evaluate_map(map, options);
   const Evaluation as_estimate = evaluate(other, map, options), as_reference = evaluate(map, other, options);
   for (const char* id : {"color_consistency", "mean_map_entropy", "point_spacing"}) {
-    Json fields = fields_of(alone.metrics, id), of_pair = as_estimate.find(id)->fields;
+    Json fields = fields_of(alone.metrics, id), of_pair = fields_of(as_estimate.metrics, id);
     of_pair.erase("reference");
     EXPECT_EQ(fields, of_pair) << id;
     fields.erase("parameters");
-    EXPECT_EQ(fields, as_reference.find(id)->fields.at("reference")) << id;
+    EXPECT_EQ(fields, fields_of(as_reference.metrics, id).at("reference")) << id;
   }
 }
 
@@ -79,8 +76,8 @@ TEST(EvaluateMap, EntropyNeedsMoreThanTheRoundingOfTheFile) {
   const MapEvaluation found = evaluate_map(plane, options);
   EXPECT_TRUE(fields_of(found.metrics, "mean_map_entropy").at("value").is_null());
   const Evaluation pair = evaluate(plane, plane, options);
-  EXPECT_TRUE(pair.find("mean_map_entropy")->fields.at("value").is_null());
-  EXPECT_TRUE(pair.find("mean_map_entropy")->fields.at("reference").at("value").is_null());
+  EXPECT_TRUE(fields_of(pair.metrics, "mean_map_entropy").at("value").is_null());
+  EXPECT_TRUE(fields_of(pair.metrics, "mean_map_entropy").at("reference").at("value").is_null());
 }
 
 TEST(EvaluateMap, CropsAndThins) {
@@ -123,11 +120,7 @@ TEST(EvaluateMap, RefusesWhatCannotBeEvaluated) {
 
 TEST(EvaluateMap, TheSameForAnyNumberOfThreads) {
   const auto metrics = [] {
-    Json all;
-    for (const MetricRecord& record : evaluate_map(painted_sheet(100'000, 3), {}).metrics) {
-      all[std::string(record.info->id)] = record.fields;
-    }
-    return all.dump();
+    return fields_of(evaluate_map(painted_sheet(100'000, 3), {}).metrics).dump();
   };
   const std::string expected = metrics();
   const ThreadLimit limit(1);

@@ -1,16 +1,41 @@
-#include "cmap/metrics/color_consistency.hpp"
-
 #include <cmath>
 #include <map>
 
 #include "cmap/core/error.hpp"
-#include "metrics/map_pairs.hpp"
+#include "metrics/measured.hpp"
 
 namespace cmap {
 namespace {
 
-ColorConsistency consistency(const PointCloud& cloud, double voxel_m, std::uint64_t min_points = 2) {
-  return color_consistency(IndexedMap(cloud), voxel_m, min_points);
+/// Both values, their counts, and the median.
+struct Consistency {
+  double zero, exclude, median;
+  std::uint64_t n_occupied, n_enough, n_singletons, n_one_place;
+};
+
+MetricOptions options_of(double voxel_m, std::uint64_t min_points, Singletons singletons = Singletons::kZero) {
+  MetricOptions options;
+  options.ccs_voxel_m = voxel_m;
+  options.ccs_min_points = min_points;
+  options.ccs_singletons = singletons;
+  return options;
+}
+
+Consistency consistency(const PointCloud& cloud, double voxel_m, std::uint64_t min_points = 2) {
+  const Record zero = test::measured(catalog::color_consistency, cloud, options_of(voxel_m, min_points));
+  const Record exclude =
+      test::measured(catalog::color_consistency, cloud, options_of(voxel_m, min_points, Singletons::kExclude));
+  const auto count = [](const Record& record, const char* name) {
+    return static_cast<std::uint64_t>(test::number(record, name));
+  };
+  const ColorConsistency field = color_consistency(IndexedMap(cloud), voxel_m, min_points);
+  return {*zero.value,
+          *exclude.value,
+          test::number(zero, "median"),
+          count(zero, "n_voxels"),
+          count(exclude, "n_voxels"),
+          count(zero, "n_singletons"),
+          static_cast<std::uint64_t>(field.n_one_place.value())};
 }
 
 PointCloud sheet() { return test::two_sheets().reference; }
@@ -39,7 +64,7 @@ double by_definition(const PointCloud& cloud, double voxel_m, std::size_t min_po
   return sum / static_cast<double>(n_voxels);
 }
 
-void expect_same(const ColorConsistency& found, const ColorConsistency& expected) {
+void expect_same(const Consistency& found, const Consistency& expected) {
   EXPECT_EQ(found.n_enough, expected.n_enough);
   EXPECT_EQ(found.n_occupied, expected.n_occupied);
   EXPECT_EQ(found.n_singletons, expected.n_singletons);
@@ -54,7 +79,7 @@ TEST(ColorConsistency, HalfBlackHalfWhite) {
     Array<Rgb8> colors(n, kBlack);
     std::fill(colors.begin() + static_cast<long>(n / 2), colors.end(), kWhite);
     cloud.colors = colors;
-    const ColorConsistency found = consistency(cloud, 1.0);
+    const Consistency found = consistency(cloud, 1.0);
     EXPECT_EQ(found.n_occupied, 1U);
     const auto count = static_cast<double>(n);
     EXPECT_DOUBLE_EQ(found.exclude, 3.0 * count / (4.0 * (count - 1.0)));
@@ -67,17 +92,13 @@ TEST(ColorConsistency, HandComputedOverThreeVoxels) {
   const PointCloud cloud =
       test::cloud_of({{0.1f, 0, 0}, {0.2f, 0, 0}, {1.1f, 0, 0}, {1.2f, 0, 0}, {2.1f, 0, 0}, {2.2f, 0, 0}, {9, 9, 9}},
                      {kBlack, kWhite, {7, 8, 9}, {7, 8, 9}, {0, 3, 3}, {51, 3, 3}, kWhite});
-  const ColorConsistency found = consistency(cloud, 1.0);
+  const Consistency found = consistency(cloud, 1.0);
   EXPECT_EQ(found.n_occupied, 4U);
   EXPECT_EQ(found.n_enough, 3U);
   EXPECT_EQ(found.n_singletons, 1U);
   EXPECT_DOUBLE_EQ(found.zero, 1.52 / 4.0);
   EXPECT_DOUBLE_EQ(found.exclude, 1.52 / 3.0);
   EXPECT_DOUBLE_EQ(found.median, 0.02);
-  EXPECT_EQ(found.value(Singletons::kZero), found.zero);
-  EXPECT_EQ(found.value(Singletons::kExclude), found.exclude);
-  EXPECT_EQ(found.n_voxels(Singletons::kZero), 4U);
-  EXPECT_EQ(found.n_voxels(Singletons::kExclude), 3U);
 }
 
 /// The example of the authors' tool: two voxels of trace 0.02; a lone point makes them two of three.
@@ -93,7 +114,7 @@ TEST(ColorConsistency, TheAuthorsExample) {
 }
 
 TEST(ColorConsistency, OnePointAVoxelIsPerfectAndHasNoMedian) {
-  const ColorConsistency found = consistency(test::cloud_of({{0, 0, 0}, {5, 0, 0}}, {kBlack, kWhite}), 1.0);
+  const Consistency found = consistency(test::cloud_of({{0, 0, 0}, {5, 0, 0}}, {kBlack, kWhite}), 1.0);
   EXPECT_EQ(found.zero, 0.0);
   EXPECT_TRUE(std::isnan(found.exclude));
   EXPECT_TRUE(std::isnan(found.median));
@@ -105,7 +126,7 @@ TEST(ColorConsistency, CopiesOfAPointAreAtOnePlace) {
   const PointCloud cloud = test::cloud_of(
       {{0.5f, 0, 0}, {0.5f, 0, 0}, {0.5f, 0, 0}, {3, 0, 0}, {3, 0, 0}, {6.25f, 0, 0}, {6.5f, 0, 0}, {9, 0, 0}},
       {kBlack, kBlack, kBlack, kBlack, kWhite, kBlack, kBlack, kBlack});
-  const ColorConsistency found = consistency(cloud, 1.0);
+  const Consistency found = consistency(cloud, 1.0);
   EXPECT_EQ(found.n_occupied, 4U);
   EXPECT_EQ(found.n_singletons, 1U);
   EXPECT_EQ(found.n_one_place, 2U);
@@ -114,21 +135,25 @@ TEST(ColorConsistency, CopiesOfAPointAreAtOnePlace) {
 TEST(ColorConsistency, PointsWithoutColorOccupyNothing) {
   PointCloud cloud = test::cloud_of({{0.1f, 0, 0}, {0.2f, 0, 0}, {0.3f, 0, 0}, {5, 0, 0}});
   cloud.colors = Array<RgbF>{{0, 0, 0}, {1, 0, 0}, {NAN, NAN, NAN}, {NAN, NAN, NAN}};
-  const ColorConsistency found = consistency(cloud, 1.0);
+  const Consistency found = consistency(cloud, 1.0);
   EXPECT_EQ(found.n_occupied, 1U);
   EXPECT_EQ(found.zero, 0.5);
   EXPECT_EQ(found.exclude, 0.5);
 }
 
-TEST(ColorConsistency, SpreadsAreThoseOfTheMean) {
+TEST(ColorConsistency, ItsVoxelsAreThoseOfTheMean) {
   const IndexedMap map(sheet());
-  for (Singletons singletons : {Singletons::kZero, Singletons::kExclude}) {
-    const ColorConsistency found = color_consistency(map, 0.5, 3);
-    const std::vector<VoxelColorSpread> spreads = voxel_color_spreads(map, 0.5, 3, singletons);
-    EXPECT_EQ(spreads.size(), found.n_voxels(singletons));
-    double sum = 0.0;
-    for (const VoxelColorSpread& voxel : spreads) sum += voxel.trace;
-    EXPECT_NEAR_RELATIVE(sum / static_cast<double>(spreads.size()), found.value(singletons), test::kSummation);
+  const std::vector<VoxelColors> voxels = voxel_colors(map, 0.5);
+  for (const Singletons singletons : {Singletons::kZero, Singletons::kExclude}) {
+    const Record found = test::measured(catalog::color_consistency, sheet(), options_of(0.5, 3, singletons));
+    double sum = 0.0, n = 0.0;
+    for (const VoxelColors& voxel : voxels) {
+      if (!is_in_mean(voxel, singletons, 3)) continue;
+      sum += voxel.trace;
+      ++n;
+    }
+    EXPECT_EQ(n, test::number(found, "n_voxels"));
+    EXPECT_NEAR_RELATIVE(sum / n, *found.value, test::kSummation);
   }
 }
 
@@ -146,9 +171,9 @@ TEST(ColorConsistency, VoxelsAreAnchoredAtTheWorldsOriginAndHoldTheirLowerBorder
 
 TEST(ColorConsistency, MinPointsLeavesThinVoxelsOut) {
   const PointCloud cloud = sheet();
-  ColorConsistency before = consistency(cloud, 0.5, 2);
+  Consistency before = consistency(cloud, 0.5, 2);
   for (std::uint64_t min_points : {3, 4, 6}) {
-    const ColorConsistency after = consistency(cloud, 0.5, min_points);
+    const Consistency after = consistency(cloud, 0.5, min_points);
     EXPECT_LT(after.n_enough, before.n_enough);
     EXPECT_EQ(after.n_occupied, before.n_occupied);
     EXPECT_EQ(after.zero, before.zero) << "which has no least number";
@@ -158,7 +183,7 @@ TEST(ColorConsistency, MinPointsLeavesThinVoxelsOut) {
 }
 
 TEST(ColorConsistency, NoVoxelIsMissing) {
-  const ColorConsistency none = consistency(sheet(), 100.0, 5000);
+  const Consistency none = consistency(sheet(), 100.0, 5000);
   EXPECT_EQ(none.n_enough, 0U);
   EXPECT_TRUE(std::isnan(none.exclude));
   EXPECT_FALSE(std::isnan(none.zero));
@@ -167,7 +192,7 @@ TEST(ColorConsistency, NoVoxelIsMissing) {
 TEST(ColorConsistency, EqualsTheDefinition) {
   for (double voxel_m : {0.2, 0.25, 0.7, 4.0, 300.0}) {
     SCOPED_TRACE(voxel_m);
-    const ColorConsistency found = consistency(sheet(), voxel_m);
+    const Consistency found = consistency(sheet(), voxel_m);
     EXPECT_NEAR_RELATIVE(found.exclude, by_definition(sheet(), voxel_m, 2), test::kSummation);
     // The other mean differs by its number of voxels alone.
     const double share = static_cast<double>(found.n_enough) / static_cast<double>(found.n_occupied);
@@ -192,7 +217,7 @@ TEST(ColorConsistency, DoesNotChangeWithAColorShift) {
   for (std::size_t i = 0; i < 2000; ++i)
     colors[i] = {static_cast<std::uint8_t>(i % 100), static_cast<std::uint8_t>(i % 41), 0};
   cloud.colors = colors;
-  const ColorConsistency expected = consistency(cloud, 1.0);
+  const Consistency expected = consistency(cloud, 1.0);
   for (Rgb8& c : colors) c = {static_cast<std::uint8_t>(c[0] + 100), static_cast<std::uint8_t>(c[1] + 100), 100};
   cloud.colors = colors;
   expect_same(consistency(cloud, 1.0), expected);
@@ -205,7 +230,7 @@ TEST(ColorConsistency, IsInvariantUnderPermutation) {
 TEST(ColorConsistency, IsInvariantUnderShiftsByWholeVoxels) {
   for (double voxel_m : {0.25, 4.0}) {
     PointCloud cloud = sheet();
-    const ColorConsistency expected = consistency(cloud, voxel_m);
+    const Consistency expected = consistency(cloud, voxel_m);
     cloud.origin = {1e6, -1e6, 1e6};
     expect_same(consistency(cloud, voxel_m), expected);
     expect_same(consistency(transformed(sheet(), test::translation({-1e6, 1e6, 4.0})), voxel_m), expected);

@@ -1,18 +1,43 @@
-#include "cmap/metrics/local_color_recall.hpp"
-
 #include <cmath>
 
-#include "metrics/map_pairs.hpp"
+#include "metrics/measured.hpp"
 
 namespace cmap {
 namespace {
 
-LocalColorRecall recall(const test::Clouds& clouds, double tau, double radius_m, bool curve = false) {
-  return local_color_recall(clouds.pair(), {tau, radius_m, curve});
+/// The metric's numbers, and the field that it counts.
+struct Recall {
+  std::uint64_t n_reference, n_covered, n_recalled;
+  double value, coverage, conditional;
+  RecallCurve curve;
+  Array<RecallClass> classes;
+};
+
+Recall recall(const MapPair& pair, double tau, double radius_m, bool curve = false) {
+  MetricOptions options;
+  options.lcr_tau = tau;
+  options.lcr_radius_m = radius_m;
+  options.lcr_curve = curve;
+  MetricInputs inputs(options, pair);
+  std::vector<Warning> warnings;
+  const Record record = measure(catalog::local_color_recall, inputs, warnings);
+  const auto count = [&](const char* name) { return static_cast<std::uint64_t>(test::number(record, name)); };
+  return {count("n_reference"),
+          count("n_covered"),
+          count("n_recalled"),
+          *record.value,
+          test::number(record, "coverage"),
+          test::number(record, "conditional"),
+          inputs.recall->curve,
+          inputs.recall->classes};
+}
+
+Recall recall(const test::Clouds& clouds, double tau, double radius_m, bool curve = false) {
+  return recall(clouds.pair(), tau, radius_m, curve);
 }
 
 /// One black reference point and one estimated point of the given color in the same place.
-LocalColorRecall recall_of_color(Rgb8 color, double tau) {
+Recall recall_of_color(Rgb8 color, double tau) {
   return recall({test::cloud_of({{0, 0, 0}}, {{0, 0, 0}}), test::cloud_of({{0, 0, 0}}, {color})}, tau, 0.5);
 }
 
@@ -29,7 +54,7 @@ Array<RecallClass> classes_by_definition(const test::Clouds& clouds, double tau,
   return classes;
 }
 
-void expect_same(const LocalColorRecall& found, const LocalColorRecall& expected) {
+void expect_same(const Recall& found, const Recall& expected) {
   EXPECT_EQ(found.n_reference, expected.n_reference);
   EXPECT_EQ(found.n_covered, expected.n_covered);
   EXPECT_EQ(found.n_recalled, expected.n_recalled);
@@ -43,13 +68,13 @@ TEST(LocalColorRecall, HandComputed) {
                                              {{20, 20, 20}, {255, 255, 255}, {10, 10, 10}, {255, 0, 0}, {10, 0, 10}});
   const test::Clouds clouds{reference, estimate};
   const MapPair pair = clouds.pair();
-  const LocalColorRecall found = local_color_recall(pair, {});
+  const Recall found = recall(pair, 0.1, 0.5);
   EXPECT_EQ(found.n_reference, 4U);
   EXPECT_EQ(found.n_covered, 3U);
   EXPECT_EQ(found.n_recalled, 2U);
-  EXPECT_EQ(found.value(), 0.5);
-  EXPECT_EQ(found.coverage(), 0.75);
-  EXPECT_DOUBLE_EQ(found.conditional(), 2.0 / 3.0);
+  EXPECT_EQ(found.value, 0.5);
+  EXPECT_EQ(found.coverage, 0.75);
+  EXPECT_DOUBLE_EQ(found.conditional, 2.0 / 3.0);
   EXPECT_EQ(in_original_order(pair.reference.index.points, found.classes),
             (Array<RecallClass>{RecallClass::kRecalled, RecallClass::kWrongColor, RecallClass::kNotCovered,
                                 RecallClass::kRecalled}));
@@ -86,11 +111,12 @@ TEST(LocalColorRecall, TheRadiusIsInclusive) {
   EXPECT_EQ(recall(clouds, 0.1, 0.5).n_recalled, 1U);
   // 2^-24 m is the step from 0.5 to 1 m; two of them belong to the threshold.
   EXPECT_EQ(recall(clouds, 0.1, 0.5 - 2 * 0x1p-24).n_covered, 1U);
-  EXPECT_EQ(local_color_recall(clouds.pair(), {.radius_m = 0.5 - 1e-9, .radius_steps = 0.0}).n_covered, 0U);
-  const LocalColorRecall none = recall(clouds, 0.1, 0.5 - 2.5 * 0x1p-24);
+  EXPECT_EQ(find_recall(clouds.pair(), {.radius_m = 0.5 - 1e-9, .radius_steps = 0.0}).classes[0],
+            RecallClass::kNotCovered);
+  const Recall none = recall(clouds, 0.1, 0.5 - 2.5 * 0x1p-24);
   EXPECT_EQ(none.n_covered, 0U);
-  EXPECT_EQ(none.value(), 0.0);
-  EXPECT_TRUE(std::isnan(none.conditional()));
+  EXPECT_EQ(none.value, 0.0);
+  EXPECT_TRUE(std::isnan(none.conditional));
 }
 
 /// Points without color of a reference count nowhere, those of an estimate cover only.
@@ -100,7 +126,7 @@ TEST(LocalColorRecall, MissingColorsByHand) {
   clouds.reference.colors = Array<RgbF>{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {NAN, NAN, NAN}};
   clouds.estimate.colors = Array<RgbF>{{0, 0, 0}, {NAN, NAN, NAN}, {NAN, NAN, NAN}, {0.25f, 0, 0}, {0, 0, 0}};
   const MapPair pair = clouds.pair();
-  const LocalColorRecall found = local_color_recall(pair, {.curve = true});
+  const Recall found = recall(pair, 0.1, 0.5, true);
   EXPECT_EQ(found.n_reference, 4U);
   EXPECT_EQ(found.n_covered, 3U);
   EXPECT_EQ(found.n_recalled, 2U);
@@ -125,7 +151,7 @@ TEST(LocalColorRecall, MissingColorsEqualTheDefinition) {
   };
   clouds = {with_gaps(clouds.reference, 7), with_gaps(clouds.estimate, 3)};
   const MapPair pair = clouds.pair();
-  const LocalColorRecall found = local_color_recall(pair, {0.1, 0.5, false});
+  const Recall found = recall(pair, 0.1, 0.5);
   Array<RecallClass> expected = classes_by_definition(clouds, 0.1, 0.5);  // NaN is not at most 3 tau
   for (std::size_t i = 0; i < expected.size(); i += 7) expected[i] = RecallClass::kNoColor;
   EXPECT_EQ(in_original_order(pair.reference.index.points, found.classes), expected);
@@ -137,7 +163,7 @@ TEST(LocalColorRecall, EqualsTheDefinition) {
   for (double tau : {0.02, 0.05, 0.1, 0.2}) {
     for (double radius_m : {0.1, 0.5, 2.0}) {
       SCOPED_TRACE(testing::Message() << "tau " << tau << ", radius " << radius_m);
-      const LocalColorRecall found = local_color_recall(pair, {tau, radius_m, false});
+      const Recall found = recall(pair, tau, radius_m);
       const Array<RecallClass> expected = classes_by_definition(clouds, tau, radius_m);
       EXPECT_EQ(in_original_order(pair.reference.index.points, found.classes), expected);
       const auto count = [&](RecallClass c) {
@@ -154,9 +180,9 @@ TEST(LocalColorRecall, OfAMapAndItselfIsOne) {
   PointCloud repainted = test::painted_triplicates(300);
   test::paint(repainted, 17);
   for (const PointCloud& cloud : {test::two_sheets().reference, test::painted_triplicates(300), repainted}) {
-    const LocalColorRecall same = recall({cloud, cloud}, 1e-6, 1e-6, true);
-    EXPECT_EQ(same.value(), 1.0);
-    EXPECT_EQ(same.coverage(), 1.0);
+    const Recall same = recall({cloud, cloud}, 1e-6, 1e-6, true);
+    EXPECT_EQ(same.value, 1.0);
+    EXPECT_EQ(same.coverage, 1.0);
     EXPECT_DOUBLE_EQ(same.curve.area, 1.0);
   }
 }
@@ -165,38 +191,38 @@ TEST(LocalColorRecall, RisesWithTauUpToTheCoverage) {
   const MapPair pair = test::two_sheets().pair();
   std::uint64_t before = 0;
   for (double tau = 0.01; tau < 0.7; tau += 0.03) {
-    const LocalColorRecall found = local_color_recall(pair, {tau, 0.5, false});
+    const Recall found = recall(pair, tau, 0.5);
     EXPECT_GE(found.n_recalled, before);
     EXPECT_LE(found.n_recalled, found.n_covered);
     before = found.n_recalled;
   }
   // No two colors are farther apart than sqrt 3 < 3 x 0.6.
-  const LocalColorRecall any = local_color_recall(pair, {0.6, 0.5, false});
+  const Recall any = recall(pair, 0.6, 0.5);
   EXPECT_EQ(any.n_recalled, any.n_covered);
   EXPECT_LT(any.n_covered, any.n_reference);
 }
 
 TEST(LocalColorRecall, ValueAndCoverageRiseWithTheRadius) {
   const MapPair pair = test::two_sheets().pair();
-  LocalColorRecall before = local_color_recall(pair, {0.1, 0.02, false});
+  Recall before = recall(pair, 0.1, 0.02);
   for (double radius_m : {0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 100.0}) {
-    const LocalColorRecall after = local_color_recall(pair, {0.1, radius_m, false});
+    const Recall after = recall(pair, 0.1, radius_m);
     EXPECT_GE(after.n_covered, before.n_covered);
     EXPECT_GE(after.n_recalled, before.n_recalled);
     EXPECT_LE(after.n_recalled, after.n_covered);
     before = after;
   }
-  EXPECT_EQ(before.coverage(), 1.0);
+  EXPECT_EQ(before.coverage, 1.0);
 }
 
 TEST(LocalColorRecall, AppendedEstimatePointsNeverLowerIt) {
   test::Clouds clouds = test::two_sheets();
-  LocalColorRecall before = recall(clouds, 0.1, 0.5);
+  Recall before = recall(clouds, 0.1, 0.5);
   for (unsigned step = 0; step < 3; ++step) {
     PointCloud more = test::sheet_cloud(500, 30 + step);
     test::paint(more, step);
     clouds.estimate = test::appended(clouds.estimate, more);
-    const LocalColorRecall after = recall(clouds, 0.1, 0.5);
+    const Recall after = recall(clouds, 0.1, 0.5);
     EXPECT_GE(after.n_covered, before.n_covered);
     EXPECT_GT(after.n_recalled, before.n_recalled);
     before = after;
@@ -206,14 +232,14 @@ TEST(LocalColorRecall, AppendedEstimatePointsNeverLowerIt) {
 TEST(LocalColorRecall, TheCurveIsOneRecallForEachTau) {
   const MapPair pair = test::two_sheets().pair();
   for (double tau : {0.01, 0.1, 0.5}) {  // below, among and above those of the curve
-    const LocalColorRecall found = local_color_recall(pair, {tau, 0.5, true});
-    EXPECT_EQ(found.n_recalled, local_color_recall(pair, {tau, 0.5, false}).n_recalled);
+    const Recall found = recall(pair, tau, 0.5, true);
+    EXPECT_EQ(found.n_recalled, recall(pair, tau, 0.5).n_recalled);
     const RecallCurve& curve = found.curve;
     ASSERT_EQ(curve.tau.size(), 15U);
     ASSERT_EQ(curve.value.size(), 15U);
     for (std::size_t i = 0; i < 15; ++i) {
       EXPECT_DOUBLE_EQ(curve.tau[i], 0.02 * static_cast<double>(i + 1));
-      EXPECT_EQ(curve.value[i], local_color_recall(pair, {curve.tau[i], 0.5, false}).value());
+      EXPECT_EQ(curve.value[i], recall(pair, curve.tau[i], 0.5).value);
     }
     EXPECT_TRUE(std::is_sorted(curve.value.begin(), curve.value.end()));
     EXPECT_LT(curve.value.front(), curve.value.back());
@@ -231,7 +257,7 @@ TEST(LocalColorRecall, AreaUnderTheCurveByHand) {
 
 TEST(LocalColorRecall, IsInvariantUnderMotionPermutationTranslationAndScale) {
   const test::Clouds clouds = test::two_sheets();
-  const LocalColorRecall expected = recall(clouds, 0.1, 0.5);
+  const Recall expected = recall(clouds, 0.1, 0.5);
   // No pair of this size lies within rounding of the radius.
   expect_same(recall(test::moved(clouds, test::rigid_motion()), 0.1, 0.5), expected);
   expect_same(recall(test::permuted(clouds), 0.1, 0.5), expected);
@@ -241,9 +267,9 @@ TEST(LocalColorRecall, IsInvariantUnderMotionPermutationTranslationAndScale) {
 
 TEST(LocalColorRecall, SameForAnyNumberOfThreads) {
   const MapPair pair = test::two_sheets(90000, 80000).pair();
-  const LocalColorRecall many = local_color_recall(pair, {0.02, 0.3, false});
+  const Recall many = recall(pair, 0.02, 0.3);
   const ThreadLimit limit(1);
-  EXPECT_EQ(local_color_recall(pair, {0.02, 0.3, false}).classes, many.classes);
+  EXPECT_EQ(recall(pair, 0.02, 0.3).classes, many.classes);
 }
 
 TEST(LocalColorRecall, NeedsColorsInBothMaps) {

@@ -1,18 +1,40 @@
-#include "cmap/metrics/mean_map_entropy.hpp"
-
 #include <Eigen/LU>
 #include <cmath>
 #include <numbers>
 
-#include "metrics/map_pairs.hpp"
+#include "metrics/measured.hpp"
 
 namespace cmap {
 namespace {
 
 const double kEntropyOfUnitGaussian = 1.5 * std::log(2.0 * std::numbers::pi * std::numbers::e);
 
-MeanMapEntropy entropy(const PointCloud& cloud, double radius_m, std::uint64_t min_neighbors) {
-  return mean_map_entropy(neighborhood_shapes(Bvh(sort_points(cloud)), radius_m), min_neighbors);
+struct Entropy {
+  double value;
+  std::uint64_t n, n_left_out, n_flat;
+};
+
+Entropy entropy_of(const Record& record) {
+  const auto count = [&](const char* name) { return static_cast<std::uint64_t>(test::number(record, name)); };
+  return {*record.value, count("n"), count("n_left_out"), count("n_flat")};
+}
+
+Entropy entropy(const PointCloud& cloud, double radius_m, std::uint64_t min_neighbors) {
+  MetricOptions options;
+  options.mme_radius_m = radius_m;
+  options.mme_min_neighbors = min_neighbors;
+  return entropy_of(test::measured(catalog::mean_map_entropy, cloud, options));
+}
+
+/// Of these neighborhoods in place of a map's.
+Entropy entropy(const NeighborhoodShape& shape, std::uint64_t min_neighbors) {
+  const IndexedMap map(test::cloud_of(std::vector<Eigen::Vector3f>(shape.n_neighbors.size(), {0, 0, 0})));
+  MetricOptions options;
+  options.mme_min_neighbors = min_neighbors;
+  MetricInputs inputs(options, map);
+  inputs.neighborhoods.estimate = shape;
+  std::vector<Warning> warnings;
+  return entropy_of(measure(catalog::mean_map_entropy, inputs, warnings));
 }
 
 /// A map with volume everywhere.
@@ -20,7 +42,7 @@ PointCloud block() { return test::uniform_cloud(2000, 1, 3.0f); }
 
 constexpr double kRadius_m = 0.5;
 
-void expect_same(const MeanMapEntropy& found, const MeanMapEntropy& expected, double tolerance) {
+void expect_same(const Entropy& found, const Entropy& expected, double tolerance) {
   EXPECT_EQ(found.n, expected.n);
   EXPECT_EQ(found.n_left_out, expected.n_left_out);
   EXPECT_NEAR(found.value, expected.value, tolerance);
@@ -30,7 +52,7 @@ TEST(MeanMapEntropy, HandComputed) {
   const double e = std::numbers::e;
   const NeighborhoodShape shape{{10, 11, 9, 12, 13}, {1.0, e * e, 1.0, 0.0, std::nan("")}, {0, 0, 0, 1, 0}};
   // The third has too few neighbors, the fourth is flat, the fifth has no covariance: 1/2 (0 + 2) / 2 is left.
-  const MeanMapEntropy found = mean_map_entropy(shape, 10);
+  const Entropy found = entropy(shape, 10);
   EXPECT_EQ(found.n, 2U);
   EXPECT_EQ(found.n_left_out, 2U);
   EXPECT_EQ(found.n_flat, 1U);
@@ -41,7 +63,7 @@ TEST(MeanMapEntropy, OfAnOctahedron) {
   // Only the center has six neighbors within 1.25; their covariance is 2/5 I.
   const PointCloud cloud =
       test::cloud_of({{0, 0, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}});
-  const MeanMapEntropy found = entropy(cloud, 1.25, 6);
+  const Entropy found = entropy(cloud, 1.25, 6);
   EXPECT_EQ(found.n, 1U);
   EXPECT_EQ(found.n_left_out, 6U);
   EXPECT_DOUBLE_EQ(found.value, kEntropyOfUnitGaussian + 0.5 * std::log(0.064));
@@ -49,7 +71,7 @@ TEST(MeanMapEntropy, OfAnOctahedron) {
 
 TEST(MeanMapEntropy, NoPointQualifies) {
   for (const PointCloud& cloud : {test::cloud_of({{1, 2, 3}}), test::repeated(test::cloud_of({{1, 2, 3}}), 50)}) {
-    const MeanMapEntropy none = entropy(cloud, 0.1, 10);
+    const Entropy none = entropy(cloud, 0.1, 10);
     EXPECT_TRUE(std::isnan(none.value));
     EXPECT_EQ(none.n, 0U);
     EXPECT_EQ(none.n_left_out + none.n_flat, cloud.size());
@@ -75,7 +97,7 @@ TEST(MeanMapEntropy, EqualsTheDefinition) {
     sum += 0.5 * std::log(std::pow(2.0 * std::numbers::pi * std::numbers::e, 3.0) * covariance.determinant());
     ++n;
   }
-  const MeanMapEntropy found = entropy(cloud, kRadius_m, 10);
+  const Entropy found = entropy(cloud, kRadius_m, 10);
   EXPECT_EQ(found.n, n);
   EXPECT_LT(found.n, cloud.size());
   // Determinants of ten and more points in a ball keep all but a few of their sixteen digits.
@@ -84,7 +106,7 @@ TEST(MeanMapEntropy, EqualsTheDefinition) {
 
 TEST(MeanMapEntropy, IsInvariantUnderMotionPermutationAndTranslation) {
   const PointCloud cloud = block();
-  const MeanMapEntropy expected = entropy(cloud, kRadius_m, 8);
+  const Entropy expected = entropy(cloud, kRadius_m, 8);
   expect_same(entropy(test::permuted(cloud, 3), kRadius_m, 8), expected, test::kSummation * std::abs(expected.value));
   expect_same(entropy(transformed(cloud, test::translation({1e6, -1e6, 1e6})), kRadius_m, 8), expected,
               test::kSummation);
@@ -93,8 +115,8 @@ TEST(MeanMapEntropy, IsInvariantUnderMotionPermutationAndTranslation) {
 }
 
 TEST(MeanMapEntropy, GrowsByThreeTimesTheLogarithmOfTheScale) {
-  const MeanMapEntropy expected = entropy(block(), kRadius_m, 8);
-  const MeanMapEntropy found = entropy(transformed(block(), test::scaling(4.0)), 4.0 * kRadius_m, 8);
+  const Entropy expected = entropy(block(), kRadius_m, 8);
+  const Entropy found = entropy(transformed(block(), test::scaling(4.0)), 4.0 * kRadius_m, 8);
   EXPECT_EQ(found.n, expected.n);
   EXPECT_NEAR(found.value, expected.value + 3.0 * std::log(4.0), 1e-12);
 }
@@ -103,7 +125,7 @@ TEST(MeanMapEntropy, MorePointsQualifyWithALargerRadiusAndFewerWithMoreNeighbors
   const PointCloud cloud = block();
   std::uint64_t before = 0;
   for (double radius_m : {0.1, 0.2, 0.3, 0.5, 1.0}) {
-    const MeanMapEntropy found = entropy(cloud, radius_m, 10);
+    const Entropy found = entropy(cloud, radius_m, 10);
     EXPECT_GE(found.n, before);
     EXPECT_EQ(found.n + found.n_left_out + found.n_flat, cloud.size());
     before = found.n;
@@ -134,7 +156,7 @@ TEST(MeanMapEntropy, AnExactPlaneHasNoneWhicheverWayItIsTurned) {
     for (double angle_rad : {0.0, 0.01, 0.7, 1.5707963267948966, 2.3}) {
       for (const Eigen::Vector3d& shift : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(7, -31, 2)}) {
         PointCloud cloud = transformed(plane(), test::translation(shift) * turned(angle_rad, axis));
-        const MeanMapEntropy found = entropy(cloud, 0.25, 5);
+        const Entropy found = entropy(cloud, 0.25, 5);
         EXPECT_EQ(found.n, 0U) << angle_rad << " about " << axis.transpose();
         EXPECT_EQ(found.n_left_out, 0U);
         EXPECT_EQ(found.n_flat, 900U);
@@ -153,8 +175,8 @@ TEST(MeanMapEntropy, WhatIsThickerThanTheRoundingHasOne) {
   // The same far away, or from a file of millimeters, would be rounding.
   EXPECT_EQ(entropy(transformed(cloud, test::rigid_motion()), 0.25, 5).n, 900U);
   const Bvh index(sort_points(cloud));
-  EXPECT_EQ(mean_map_entropy(neighborhood_shapes(index, 0.25, 0.001), 5).n_flat, 900U);
-  EXPECT_EQ(mean_map_entropy(neighborhood_shapes(index, 0.25, 1e-7), 5).n, 900U);
+  EXPECT_EQ(entropy(neighborhood_shapes(index, 0.25, 0.001), 5).n_flat, 900U);
+  EXPECT_EQ(entropy(neighborhood_shapes(index, 0.25, 1e-7), 5).n, 900U);
 }
 
 TEST(MeanMapEntropy, IsLowerForASharperMap) {

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "cmap/metrics/distances.hpp"
-#include "metrics/map_pairs.hpp"
+#include "metrics/measured.hpp"
 
 namespace cmap {
 namespace {
@@ -60,12 +59,15 @@ TEST(MapEvalAccuracy, IsOursDeflatedByTheShareOfInliers) {
   const Doubles sq_dist = random_squares(5000);
   const Doubles thresholds{0.05, 0.1, 0.2};
   const MapEvalAccuracy theirs = mapeval_accuracy(sq_dist, thresholds, 0.5);
-  const DistanceStats ours = distance_stats(sq_dist, thresholds, 1.0);
+  const MapPair pair = test::pair_with(Array<double>(sq_dist.begin(), sq_dist.end()));
+  const Record accuracy = test::measured(catalog::accuracy, pair, test::with_thresholds(thresholds));
+  const Record fitness = test::measured(catalog::fitness, pair, test::with_thresholds(thresholds));
   for (std::size_t t = 0; t < 3; ++t) {
-    const double share = static_cast<double>(ours.within[t].n) / static_cast<double>(theirs.n_correspondences);
-    EXPECT_NEAR_RELATIVE(theirs.accuracy_m[t], ours.within[t].rmse_m * std::sqrt(share), test::kSummation);
-    EXPECT_LT(theirs.accuracy_m[t], ours.within[t].rmse_m);
-    EXPECT_EQ(theirs.completeness[t], ours.share_within(t));
+    const Record ours = test::at_threshold(accuracy, t);
+    const double share = test::number(ours, "n") / static_cast<double>(theirs.n_correspondences);
+    EXPECT_NEAR_RELATIVE(theirs.accuracy_m[t], *ours.value * std::sqrt(share), test::kSummation);
+    EXPECT_LT(theirs.accuracy_m[t], *ours.value);
+    EXPECT_EQ(theirs.completeness[t], *test::at_threshold(fitness, t).value);
   }
   EXPECT_LT(theirs.accuracy_m[0], theirs.accuracy_m[1]);
 }
@@ -145,9 +147,12 @@ TEST(Open3dRegistration, IsOursWhereNoDistanceIsTheThreshold) {
   const Doubles sq_dist = random_squares(5000);
   for (double threshold_m : {0.05, 0.1, 0.7}) {
     const Open3dRegistration theirs = open3d_registration(sq_dist, threshold_m);
-    const DistanceStats ours = distance_stats(sq_dist, Doubles{threshold_m}, 1.0);
-    EXPECT_EQ(theirs.fitness, ours.share_within(0));
-    EXPECT_NEAR_RELATIVE(theirs.inlier_rmse_m, ours.within[0].rmse_m, test::kSummation);
+    const MapPair pair = test::pair_with(Array<double>(sq_dist.begin(), sq_dist.end()));
+    const MetricOptions options = test::with_thresholds({threshold_m});
+    EXPECT_EQ(theirs.fitness, *test::at_threshold(test::measured(catalog::fitness, pair, options), 0).value);
+    EXPECT_NEAR_RELATIVE(theirs.inlier_rmse_m,
+                         *test::at_threshold(test::measured(catalog::accuracy, pair, options), 0).value,
+                         test::kSummation);
   }
 }
 

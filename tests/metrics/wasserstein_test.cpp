@@ -44,18 +44,6 @@ std::vector<GaussianPair> pairs_of(const test::Clouds& clouds, double voxel_m, s
   return gaussian_pairs(clouds.pair(), voxel_m, min_points);
 }
 
-AverageWasserstein average(const test::Clouds& clouds, double voxel_m = 4.0, std::uint64_t min_points = 20) {
-  return average_wasserstein(wasserstein_distances(pairs_of(clouds, voxel_m, min_points)));
-}
-
-void expect_same(const AverageWasserstein& found, const AverageWasserstein& expected, double tolerance,
-                 double scale = 1.0) {
-  ASSERT_GT(expected.n_voxels, 10U);
-  EXPECT_EQ(found.n_voxels, expected.n_voxels);
-  EXPECT_NEAR_RELATIVE(found.mean_m, scale * expected.mean_m, tolerance);
-  EXPECT_NEAR_RELATIVE(found.median_m, scale * expected.median_m, tolerance);
-}
-
 TEST(WassersteinDistance, OfEqualShapesIsTheDistanceOfTheMeans) {
   std::mt19937_64 random(1);
   for (int i = 0; i < 100; ++i) {
@@ -222,67 +210,6 @@ TEST(GaussianPairs, EqualTheDefinition) {
 }
 
 TEST(GaussianPairs, RefuseVoxelsTooSmallToCount) { EXPECT_THROW(pairs_of(test::two_sheets(), 1e-9, 2), UsageError); }
-
-TEST(AverageWasserstein, HandComputed) {
-  const std::vector<VoxelDistance> voxels{{{0, 0, 0}, 4.0}, {{1, 0, 0}, 1.0}, {{2, 0, 0}, 1.0}};
-  const AverageWasserstein found = average_wasserstein(voxels);
-  EXPECT_EQ(found.mean_m, 2.0);
-  EXPECT_EQ(found.median_m, 1.0);
-  EXPECT_EQ(found.n_voxels, 3U);
-  ASSERT_EQ(found.quantiles_m.size(), 21U);
-  EXPECT_EQ(found.quantiles_m[0], 1.0);
-  EXPECT_DOUBLE_EQ(found.quantiles_m[15], 2.5);
-  EXPECT_EQ(found.quantiles_m[20], 4.0);
-  EXPECT_TRUE(std::ranges::is_sorted(found.quantiles_m));
-}
-
-TEST(AverageWasserstein, WithoutVoxelsIsMissing) {
-  const AverageWasserstein none = average_wasserstein({});
-  EXPECT_EQ(none.n_voxels, 0U);
-  EXPECT_TRUE(std::isnan(none.mean_m));
-  EXPECT_TRUE(std::isnan(none.median_m));
-}
-
-TEST(AverageWasserstein, OfAMapAndItselfIsZero) {
-  for (const PointCloud& cloud : {test::two_sheets().reference, test::painted_triplicates(1000)}) {
-    const AverageWasserstein same = average({cloud, cloud});
-    EXPECT_GT(same.n_voxels, 10U);
-    EXPECT_EQ(same.mean_m, 0.0);
-    EXPECT_EQ(same.quantiles_m.back(), 0.0);
-  }
-}
-
-TEST(AverageWasserstein, OfAMapMovedInsideItsVoxelsIsTheMotion) {
-  PointCloud reference = test::uniform_cloud(4000, 6, 2.0f);  // in the middle of one voxel
-  for (Eigen::Vector3f& p : reference.positions) p += Eigen::Vector3f(1, 1, 1);
-  PointCloud estimate = reference;
-  for (Eigen::Vector3f& p : estimate.positions) p += Eigen::Vector3f(0.25f, -0.5f, 0.5f);
-  // Positions are rounded to 2^-22 m when moved; the mean of 4000 to far less.
-  EXPECT_NEAR(average({reference, estimate}).mean_m, 0.75, 1e-7);
-}
-
-TEST(AverageWasserstein, IsInvariantUnderPermutationAndShiftsByWholeVoxels) {
-  const test::Clouds clouds = test::two_sheets();
-  for (double voxel_m : {0.25, 4.0}) {
-    const std::uint64_t min_points = voxel_m > 1.0 ? 20 : 2;
-    const AverageWasserstein expected = average(clouds, voxel_m, min_points);
-    expect_same(average(test::permuted(clouds), voxel_m, min_points), expected, test::kSummation);
-    // Doubles at a million meters are rounded to 1e-10 m, of distances of 0.1 m.
-    expect_same(average(test::moved(clouds, test::translation({1e6, -1e6, 4e5})), voxel_m, min_points), expected, 1e-8);
-  }
-}
-
-TEST(AverageWasserstein, ScalesWithMapAndVoxel) {
-  const test::Clouds clouds = test::two_sheets();
-  expect_same(average(test::moved(clouds, test::scaling(2.0)), 8.0), average(clouds, 4.0), test::kSummation, 2.0);
-}
-
-TEST(AverageWasserstein, SameBitsForAnyNumberOfThreads) {
-  const test::Clouds clouds = test::two_sheets(60000, 50000);
-  const double many = average(clouds, 0.5).mean_m;
-  const ThreadLimit limit(1);
-  EXPECT_EQ(average(clouds, 0.5).mean_m, many);
-}
 
 }  // namespace
 }  // namespace cmap

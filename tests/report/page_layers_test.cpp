@@ -12,9 +12,6 @@ using ::testing::ElementsAre;
 
 TEST(RecallLayer, SharesAreTheMetrics) {
   LocalColorRecall recall;
-  recall.n_reference = 4;
-  recall.n_covered = 3;
-  recall.n_recalled = 2;
   recall.classes = {RecallClass::kRecalled, RecallClass::kNoColor, RecallClass::kRecalled, RecallClass::kWrongColor,
                     RecallClass::kNotCovered};
   const auto layer = recall_layer(recall);
@@ -27,13 +24,12 @@ TEST(RecallLayer, SharesAreTheMetrics) {
   };
   is(0, "not covered", 1, 0.25);
   is(1, "wrong color", 1, 0.25);
-  is(2, "recalled", 2, recall.value());
+  is(2, "recalled", 2, 0.5);
   is(3, "no color of its own", 1, nullptr);
 }
 
 TEST(RecallLayer, WhereEveryPointHasAColorThereAreThreeClasses) {
   LocalColorRecall recall;
-  recall.n_reference = 1;
   recall.classes = {RecallClass::kNotCovered};
   EXPECT_EQ(recall_layer(recall).at("classes").size(), 3u);
 }

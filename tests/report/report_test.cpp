@@ -99,8 +99,9 @@ TEST(Report, HoldsTheTransformThatWasGiven) {
 
 TEST(Report, EveryMetricCarriesUnitDirectionSymbolAndParameters) {
   const Json metrics = report_of(kReference, kEstimate, options_for({"all"})).at("metrics");
-  EXPECT_EQ(metrics.size(), metric_catalog().size());
-  for (const MetricInfo& info : metric_catalog()) {
+  EXPECT_EQ(metrics.size(), metric_list().size());
+  for (const Metric* metric : metric_list()) {
+    const MetricInfo& info = metric->info;
     SCOPED_TRACE(info.id);
     const Json& record = metrics.at(std::string(info.id));
     EXPECT_EQ(record.at("unit"), info.unit);

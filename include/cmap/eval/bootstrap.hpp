@@ -2,10 +2,11 @@
 
 #include <array>
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string_view>
 #include <vector>
 
-#include "cmap/eval/metric_sums.hpp"
+#include "cmap/metrics/metric_sums.hpp"
 
 namespace cmap {
 
@@ -32,16 +33,21 @@ struct Interval {
   double value, lower, upper;
 };
 
+/// Intervals of an evaluation, and what they were drawn from.
+struct Intervals {
+  BootstrapOptions options;
+  BlockSums blocks;
+  std::vector<Interval> metrics;
+};
+
 /// Spatial block bootstrap (Efron and Tibshirani 1993, chapter 13; blocks after Kuensch 1989): every replicate draws as
-/// many blocks as there are, with replacement, and computes every metric from their sums.
-std::vector<Interval> bootstrap(const BlockSums& blocks, const BootstrapOptions& options);
+/// many blocks as there are, with replacement, and computes every metric from their sums by its own formula.
+std::vector<Interval> bootstrap(const BlockSums& blocks, const MetricSettings& settings,
+                                const BootstrapOptions& options);
 
 /// The same for the difference b - a of two estimates on one reference: both are computed from the same drawn blocks,
 /// so that what is hard for both cancels. Throws std::invalid_argument where the blocks' sizes differ.
-std::vector<Interval> bootstrap_difference(const BlockSums& a, const BlockSums& b, const BootstrapOptions& options);
-
-/// As reports keep them: {block_m, keys, sums: {column: [per block]}}. Throws UsageError on anything else.
-nlohmann::ordered_json to_json(const BlockSums& blocks);
-BlockSums block_sums_from(const nlohmann::ordered_json& json);
+std::vector<Interval> bootstrap_difference(const BlockSums& a, const BlockSums& b, const MetricSettings& settings,
+                                           const BootstrapOptions& options);
 
 }  // namespace cmap

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,18 +11,41 @@
 #include "cmap/align/alignment.hpp"
 #include "cmap/core/progress.hpp"
 #include "cmap/core/warning.hpp"
+#include "cmap/eval/bootstrap.hpp"
 #include "cmap/eval/metric_catalog.hpp"
+#include "cmap/eval/observed_part.hpp"
 #include "cmap/eval/options.hpp"
+#include "cmap/eval/sensitivity.hpp"
 #include "cmap/metrics/local_color_recall.hpp"
 #include "cmap/metrics/map_pair.hpp"
+#include "cmap/metrics/metric_sums.hpp"
 
 namespace cmap {
 
-/// One metric's result as the report holds it (DESIGN, "Report"): `value` (null where there is none) or
-/// `per_threshold` or `per_range`, `parameters`, counts. Unit, symbol and direction are the catalog's.
-struct MetricRecord {
-  const MetricInfo* info;
-  nlohmann::ordered_json fields;
+/// The records of an evaluation, in the order of reports.
+class MetricRecords {
+ public:
+  MetricRecords() = default;
+  explicit MetricRecords(std::vector<MetricRecord> records) : records_(std::move(records)) {}
+
+  /// Nullptr where the metric was not computed.
+  const Record* find(std::string_view id) const;
+  /// Throws std::out_of_range, which lists what was computed.
+  const Record& at(std::string_view id) const;
+
+  bool empty() const { return records_.empty(); }
+  std::size_t size() const { return records_.size(); }
+  auto begin() const { return records_.begin(); }
+  auto end() const { return records_.end(); }
+
+ private:
+  std::vector<MetricRecord> records_;
+};
+
+/// What another tool would print; none where the maps do not have what it needs.
+struct PeerRecord {
+  std::string tool;
+  std::optional<Record> record;
 };
 
 /// What the evaluation of one pair found.
@@ -32,19 +54,17 @@ struct Evaluation {
   Eigen::Matrix4d T_ref_est = Eigen::Matrix4d::Identity();
   double overlap = 0.0;  ///< share of estimated points within the overlap distance
   double rmse_m = 0.0;
-  std::vector<MetricRecord> metrics = {};         ///< in the catalog's order
-  nlohmann::ordered_json aliases = {};            ///< by tool; null unless asked for
-  nlohmann::ordered_json intervals = {};          ///< null unless asked for
-  nlohmann::ordered_json unobserved = {};         ///< null unless asked for
-  nlohmann::ordered_json sensitivity = {};        ///< of a SensitivityBand, by who made it; null unless asked for
+  MetricRecords metrics = {};
+  std::vector<PeerRecord> peers = {};             ///< of options.as
+  std::optional<Intervals> intervals = {};        ///< where options.bootstrap asks for them
+  std::optional<ObservedPart> unobserved = {};    ///< where options.observed asks for it
+  std::optional<Sensitivity> sensitivity = {};    ///< where options.sensitivity asks for it, by who evaluated
   std::optional<Alignment> alignment = {};        ///< what gave T_ref_est, where it was not given
-  std::vector<MetricRecord> metrics_before = {};  ///< of the estimate as it came, where it was aligned
+  MetricRecords metrics_before = {};              ///< of the estimate as it came, where it was aligned
   std::vector<Warning> warnings = {};
   std::vector<std::pair<std::string, double>> stage_seconds = {};
   MapPair pair;                                 ///< both maps after transform, crop and thinning, with their neighbors
   std::optional<LocalColorRecall> recall = {};  ///< where local_color_recall was computed
-
-  const MetricRecord* find(std::string_view id) const;
 };
 
 /// Evaluates an estimated map against a reference: transform, crop, thinning, one nearest-neighbor pass each way, then

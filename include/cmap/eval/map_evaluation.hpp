@@ -7,7 +7,7 @@ namespace cmap {
 /// What the evaluation of one map without a reference found.
 struct MapEvaluation {
   EvaluationOptions options = {};
-  std::vector<MetricRecord> metrics = {};  ///< in the catalog's order
+  MetricRecords metrics = {};
   std::vector<Warning> warnings = {};
   std::vector<std::pair<std::string, double>> stage_seconds = {};
   IndexedMap map;  ///< after crop and thinning

@@ -6,25 +6,9 @@
 #include <vector>
 
 #include "cmap/eval/options.hpp"
+#include "cmap/metrics/metric.hpp"
 
 namespace cmap {
-
-/// What is fixed about a metric: METRICS.md in one table.
-struct MetricInfo {
-  std::string_view id;
-  std::string_view symbol;  ///< the paper's, or empty
-  std::string_view title;   ///< for people
-  std::string_view group;   ///< color, color+, geometry, distribution, mme, density
-  std::string_view unit;
-  std::string_view better;  ///< "lower", "higher"; empty where neither is
-  bool needs_color;
-  bool per_threshold;           ///< has one value for each of `thresholds`
-  std::string_view definition;  ///< a sentence or two for people
-  bool needs_reference = true;  ///< else it has a value for a map alone, and of a pair for each map
-};
-
-/// All metrics in the order of reports.
-const std::vector<MetricInfo>& metric_catalog();
 
 /// By id or symbol, whatever the case; nullptr if there is none.
 const MetricInfo* find_metric(std::string_view id_or_symbol);
@@ -47,9 +31,6 @@ MetricSelection select_metrics(const EvaluationOptions& options);
 /// Throws UsageError also for metrics, groups and other options (align, as, bootstrap, observed, sensitivity) that mean
 /// nothing without a reference.
 MetricSelection select_map_metrics(const EvaluationOptions& options);
-
-/// Whether a metric is a share of points, which people read in percent.
-bool is_share(const MetricInfo& metric);
 
 /// Ids and symbols of all metrics.
 std::vector<std::string> metric_names();

@@ -9,7 +9,7 @@
 
 #include "cmap/core/point_cloud.hpp"
 #include "cmap/io/point_cloud_file.hpp"
-#include "cmap/metrics/color_consistency.hpp"
+#include "cmap/metrics/metric_options.hpp"
 #include "cmap/spatial/nearest.hpp"
 #include "cmap/spatial/visibility.hpp"
 
@@ -21,22 +21,8 @@ enum class Observed { kNone, kAuto, kSensor };
 
 /// Everything that can change a number of an evaluation. The defaults are those of METRICS: the paper's where it gives
 /// any. Command line, configuration files and reports name the fields as evaluation_option_specs() does.
-struct EvaluationOptions {
+struct EvaluationOptions : MetricOptions {
   std::vector<std::string> metrics;  ///< groups or metric ids; empty: color, geometry, distribution, as far as possible
-  std::vector<double> thresholds_m{0.2, 0.1, 0.08, 0.05, 0.01};
-  double overlap_distance_m = 1.0;
-  double lcr_tau = 0.1;
-  double lcr_radius_m = 0.5;
-  bool lcr_curve = false;
-  double ccs_voxel_m = 0.1;
-  Singletons ccs_singletons = Singletons::kZero;
-  std::uint64_t ccs_min_points = 2;
-  double awd_voxel_m = 3.0;
-  std::uint64_t awd_min_points = 100;
-  std::uint64_t scs_radius_voxels = 5;
-  double mme_radius_m = 0.1;
-  std::uint64_t mme_min_neighbors = 10;
-  std::optional<double> color_max_distance_m;
   std::optional<double> voxel_m;  ///< thin both maps first
   std::optional<Box3d> crop;      ///< reference frame
   std::vector<std::string> as;    ///< other tools, as peer_tools() names them
@@ -63,9 +49,6 @@ ReadOptions read_options(const EvaluationOptions& options, bool sha256 = false);
 
 /// The tools of `as`.
 const std::vector<std::string>& peer_tools();
-
-/// "zero", "exclude" or "refuse".
-const char* singletons_name(Singletons singletons);
 
 /// The threshold of Tanks and Temples: as given, else the largest of the thresholds.
 double tanks_and_temples_tau_m(const EvaluationOptions& options);

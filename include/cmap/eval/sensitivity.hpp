@@ -1,26 +1,45 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <map>
+#include <optional>
+#include <string_view>
+#include <vector>
 
-#include "cmap/eval/evaluation.hpp"
+#include "cmap/core/point_cloud.hpp"
+#include "cmap/core/progress.hpp"
+#include "cmap/eval/options.hpp"
 
 namespace cmap {
 
-/// How far every metric goes when the alignment is a little off: the report's `sensitivity`. A score that moves more
-/// than two methods differ by says nothing about which one is better.
+class MetricRecords;
+
+/// How far one value goes.
+struct SensitivityRange {
+  std::string_view id;
+  std::optional<double> threshold_m;
+  double lowest, highest;
+};
+
+/// How far every metric goes when the alignment is a little off. A score that moves more than two methods differ by says
+/// nothing about which one is better.
+struct Sensitivity {
+  double translation_m = 0.0, rotation_deg = 0.0;
+  std::vector<SensitivityRange> ranges;  ///< in the order of reports, the largest threshold first
+};
+
+/// Collects the values of several evaluations.
 class SensitivityBand {
  public:
-  /// Widens the band to the evaluation's values.
-  void include(const Evaluation& evaluation);
-
-  /// {translation_m, rotation_deg, metrics: {id: {lowest, highest} or per_threshold}}; null where nothing had a value.
-  nlohmann::ordered_json json(const EvaluationOptions& options) const;
+  /// Widens the band to these values.
+  void include(const MetricRecords& metrics);
+  Sensitivity found(const EvaluationOptions& options) const;
 
  private:
   struct Range {
     double lowest, highest;
   };
-  std::map<std::string, std::map<std::optional<double>, Range>> ranges_;  ///< by metric and threshold
+  std::map<std::string_view, std::map<std::optional<double>, Range>> ranges_;  ///< by metric and threshold
 };
 
 /// Evaluates the pair after each of twelve small motions of the estimate, in the reference frame: forth and back along

@@ -1,19 +1,14 @@
 #pragma once
 
-#include "cmap/metrics/distances.hpp"
+#include <span>
 
 namespace cmap {
 
-/// Chamfer distance in its named variants (METRICS, "chamfer"), from the statistics of both directions; the truncated
-/// one is capped where the statistics are.
-struct Chamfer {
-  double l1_sum;            ///< m: mean d(x^s, R) + mean d(x^r, S); the paper's CD#, MapEval's "FULL CD"
-  double l1_mean;           ///< m: half of it
-  double l2sq_sum;          ///< m^2: sum of both mean squared distances
-  double l2_rms_mean;       ///< m: mean of both directions' RMS
-  double truncated_l1_sum;  ///< m
+/// Means over one side's distances to the other map, from the sums of metric `chamfer`.
+struct MeanDistances {
+  double n, mean_m, mean_sq_m2, mean_truncated_m;  ///< truncated: each distance at most the overlap distance
 };
-Chamfer chamfer(const DistanceStats& estimate_to_reference, const DistanceStats& reference_to_estimate);
+MeanDistances mean_distances(std::span<const double> chamfer_sums);
 
 /// Harmonic mean 2PR / (P + R) of precision and recall; 0 when both are 0.
 double f_score(double precision, double recall);

@@ -39,23 +39,16 @@ struct RecallCurve {
   double area = 0.0;  ///< trapezoids under the curve over its range of tau, divided by that range
 };
 
-/// Local color recall LCR (paper): the share of reference points with an estimated point within radius_m whose color
-/// differs by at most 3 tau. 8-bit colors are compared in exact integers, distances in double. Reference points without
-/// color (NaN) count nowhere; estimated points without color cover, as coverage is geometric, but never recall.
+/// What local color recall LCR (paper) is the mean of: whether a reference point has an estimated point within radius_m
+/// whose color differs by at most 3 tau. 8-bit colors are compared in exact integers, distances in double. Reference
+/// points without color (NaN) count nowhere; estimated points without color cover, as coverage is geometric, but never
+/// recall.
 struct LocalColorRecall {
-  std::uint64_t n_reference = 0;  ///< that have a color
-  std::uint64_t n_covered = 0;    ///< with any estimated point within the radius
-  std::uint64_t n_recalled = 0;
   RecallCurve curve;           ///< empty unless asked for
   Array<RecallClass> classes;  ///< by reference slot
-
-  double value() const { return static_cast<double>(n_recalled) / static_cast<double>(n_reference); }
-  double coverage() const { return static_cast<double>(n_covered) / static_cast<double>(n_reference); }
-  /// value / coverage; NaN where nothing is covered.
-  double conditional() const { return static_cast<double>(n_recalled) / static_cast<double>(n_covered); }
 };
 
 /// Both maps need colors (std::invalid_argument). The same for any number of threads.
-LocalColorRecall local_color_recall(const MapPair& pair, const LocalColorRecallOptions& options);
+LocalColorRecall find_recall(const MapPair& pair, const LocalColorRecallOptions& options);
 
 }  // namespace cmap

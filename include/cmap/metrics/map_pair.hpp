@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cmap/core/color.hpp"
 #include "cmap/spatial/bvh.hpp"
 #include "cmap/spatial/nearest.hpp"
 #include "cmap/spatial/threshold.hpp"
@@ -72,6 +73,10 @@ struct NearestPairs {
   }
   /// Euclidean distance of both colors, unit RGB: 0 to sqrt(3); NaN where either has none.
   double color_distance(std::size_t slot) const { return (from_color(slot) - to_color(slot)).norm() / 255.0; }
+  /// CIEDE2000 of both colors; NaN where either has none.
+  double delta_e(std::size_t slot) const {
+    return delta_e_2000(srgb_to_lab(from_color(slot) / 255.0), srgb_to_lab(to_color(slot) / 255.0));
+  }
 };
 
 /// Both maps and both nearest-neighbor fields: what every metric reads.

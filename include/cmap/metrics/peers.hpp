@@ -64,6 +64,9 @@ struct CloudAnalyzerCurve {
 CloudAnalyzerCurve cloudanalyzer_curve(std::span<const double> sq_dist_estimate,
                                        std::span<const double> sq_dist_reference);
 
+/// Its share of distances d <= threshold_m.
+double cloudanalyzer_share_within(std::span<const double> sq_dist, double threshold_m);
+
 /// Its summary of one direction's distances; the standard deviation is the population's.
 struct CloudAnalyzerSummary {
   double mean_m, median_m, max_m, standard_deviation_m;

@@ -45,25 +45,15 @@ struct VoxelDistance {
 /// The Wasserstein distance of every pair, in order.
 std::vector<VoxelDistance> wasserstein_distances(std::span<const GaussianPair> pairs);
 
-/// Average Wasserstein distance AWD and its distribution; NaN without voxels.
-struct AverageWasserstein {
-  double mean_m = 0.0;
-  double median_m = 0.0;
-  std::vector<double> quantiles_m;  ///< at shares 0, 0.05 ... 1
-  std::uint64_t n_voxels = 0;
-};
-AverageWasserstein average_wasserstein(std::span<const VoxelDistance> voxels);
+/// Their mean, NaN of none.
+double mean_distance(std::span<const VoxelDistance> voxels);
 
-/// Spatial consistency SCS: the mean over voxels of the coefficient of variation (population standard deviation / mean)
-/// of the distances of the other voxels within +- radius_voxels on every axis. Voxels without others, or whose others'
-/// mean is 0, are skipped; NaN if that leaves none. The voxels must be ordered by index.
-struct SpatialConsistency {
-  double value = 0.0;
-  std::uint64_t n_voxels = 0;  ///< voxels in the mean
-};
-SpatialConsistency spatial_consistency(std::span<const VoxelDistance> voxels, int radius_voxels);
-
-/// What spatial_consistency averages, voxel by voxel; NaN where one is skipped.
+/// What spatial consistency SCS averages: around every voxel the coefficient of variation (population standard deviation
+/// / mean) of the distances of the other voxels within +- radius_voxels on every axis. NaN for voxels without others, or
+/// whose others' mean is 0. The voxels must be ordered by index.
 std::vector<double> local_variations(std::span<const VoxelDistance> voxels, int radius_voxels);
+
+/// The mean of those that are not NaN, NaN of none.
+double mean_variation(std::span<const double> variations);
 
 }  // namespace cmap

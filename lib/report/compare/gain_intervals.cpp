@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "cmap/eval/bootstrap.hpp"
+#include "cmap/eval/options.hpp"
+#include "report/record_json.hpp"
 
 namespace cmap {
 namespace {
@@ -19,6 +21,13 @@ BootstrapOptions options_of(const Json& intervals) {
   options.level = intervals.at("level").get<double>();
   options.seed = intervals.at("seed").get<std::uint64_t>();
   return options;
+}
+
+/// The parameters of the metrics, with which its sums are read.
+MetricSettings settings_of(const SavedReport& report) {
+  EvaluationOptions options;
+  apply_config(options, report.json.at("parameters").dump(), report.name);
+  return MetricSettings(options);
 }
 
 bool is_of(const Interval& interval, const ScoreKind& kind) {
@@ -50,6 +59,7 @@ std::optional<ScoreTable> gain_interval_table(const std::vector<SavedReport>& re
   const Json& base = reports[baseline].json.at("intervals");
   const BlockSums base_blocks = block_sums_from(base.at("blocks"));
   const BootstrapOptions options = options_of(base);
+  const MetricSettings settings = settings_of(reports[baseline]);
   ScoreTable table{"gain-intervals",
                    fmt::format("{} % intervals of these differences", 100.0 * options.level),
                    {"metric", "symbol", "", "unit"},
@@ -63,7 +73,7 @@ std::optional<ScoreTable> gain_interval_table(const std::vector<SavedReport>& re
     if (i == baseline) continue;
     const BlockSums blocks = block_sums_from(reports[i].json.at("intervals").at("blocks"));
     if (blocks.block_m != base_blocks.block_m) return std::nullopt;
-    const std::vector<Interval> differences = bootstrap_difference(base_blocks, blocks, options);
+    const std::vector<Interval> differences = bootstrap_difference(base_blocks, blocks, settings, options);
     table.value_columns.push_back(comparison.names[i]);
     for (std::size_t row = 0; row < comparison.kinds.size(); ++row) {
       table.rows[row].cells.push_back(cell_for(comparison.kinds[row], differences));

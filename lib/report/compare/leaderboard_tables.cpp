@@ -21,7 +21,7 @@ ScoreKind kind_of(const MetricInfo& info) {
   kind.symbol = info.symbol;
   kind.unit = info.unit;
   kind.better = info.better;
-  kind.share = is_share(info);
+  kind.share = info.share;
   kind.headline = true;
   return kind;
 }
@@ -36,7 +36,8 @@ ScoreKind at_threshold(ScoreKind kind, const std::string& at) {
 std::vector<Score> asked_for(const EvaluationOptions& options) {
   const MetricSelection selection = select_metrics(options);
   std::vector<Score> scores;
-  for (const MetricInfo& info : metric_catalog()) {
+  for (const Metric* metric : metric_list()) {
+    const MetricInfo& info = metric->info;
     if (!selection.contains(info.id) || info.id == "color_distance_by_range") continue;
     ScoreKind kind = kind_of(info);
     if (!info.per_threshold) {
@@ -167,10 +168,8 @@ std::optional<ScoreTable> published_table(const ScoreKind& kind, const Published
 }  // namespace
 
 PaperScale paper_scale(const ScoreKind& kind) {
-  constexpr double kOf255 = 255.0, kPercent = 100.0;
-  if (kind.metric == "color_distance") return {kOf255, "of 255"};
-  if (kind.metric == "color_consistency") return {kPercent, "unit RGB^2 x 100"};
-  if (kind.metric == "overlap" || kind.metric == "local_color_recall") return {kPercent, "%"};
+  const MetricInfo* info = find_metric(kind.metric);
+  if (info != nullptr && !info->paper_unit.empty()) return {info->paper_factor, std::string(info->paper_unit)};
   return {1.0, kind.unit == "1" ? "" : kind.unit};
 }
 

@@ -25,7 +25,7 @@ ScoreKind kind_of(const std::string& id, const Json& record) {
   kind.symbol = record.at("symbol").get<std::string>();
   kind.unit = record.at("unit").get<std::string>();
   if (record.at("better").is_string()) kind.better = record.at("better").get<std::string>();
-  kind.share = info != nullptr && is_share(*info);
+  kind.share = info != nullptr && info->share;
   return kind;
 }
 
@@ -53,10 +53,9 @@ bool is_same(const ScoreKind& a, const ScoreKind& b) {
   return a.metric == b.metric && a.part == b.part && a.at == b.at;
 }
 
-std::size_t place_in_catalog(const ScoreKind& kind) {
-  const auto& catalog = metric_catalog();
-  return static_cast<std::size_t>(
-      std::distance(catalog.begin(), std::ranges::find(catalog, kind.metric, &MetricInfo::id)));
+std::size_t place_in_reports(const ScoreKind& kind) {
+  const auto place = std::ranges::find(metric_list(), kind.metric, [](const Metric* m) { return m->info.id; });
+  return static_cast<std::size_t>(place - metric_list().begin());
 }
 
 }  // namespace
@@ -92,7 +91,7 @@ std::vector<ScoreKind> kinds_of(const std::vector<std::vector<Score>>& reports) 
       if (std::ranges::none_of(kinds, same)) kinds.push_back(score.kind);
     }
   }
-  std::ranges::stable_sort(kinds, {}, place_in_catalog);
+  std::ranges::stable_sort(kinds, {}, place_in_reports);
   return kinds;
 }
 

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace cmap {
+
+/// What a voxel of one point, whose colors cannot scatter, counts as in color consistency.
+enum class Singletons {
+  kZero,     ///< 0, and every occupied voxel is in the mean, as in the authors' tool
+  kExclude,  ///< nothing: voxels of fewer than min_points points are left out
+  kRefuse,   ///< there must be none
+};
+
+/// "zero", "exclude" or "refuse".
+const char* singletons_name(Singletons singletons);
+
+/// The parameters of the metrics; the defaults are those of METRICS, the paper's where it gives any.
+struct MetricOptions {
+  std::vector<double> thresholds_m{0.2, 0.1, 0.08, 0.05, 0.01};
+  double overlap_distance_m = 1.0;
+  double lcr_tau = 0.1;
+  double lcr_radius_m = 0.5;
+  bool lcr_curve = false;
+  double ccs_voxel_m = 0.1;
+  Singletons ccs_singletons = Singletons::kZero;
+  std::uint64_t ccs_min_points = 2;
+  double awd_voxel_m = 3.0;
+  std::uint64_t awd_min_points = 100;
+  std::uint64_t scs_radius_voxels = 5;
+  double mme_radius_m = 0.1;
+  std::uint64_t mme_min_neighbors = 10;
+  std::optional<double> color_max_distance_m;
+};
+
+}  // namespace cmap

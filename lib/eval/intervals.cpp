@@ -1,0 +1,76 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+
+#include "cmap/spatial/voxel_map.hpp"
+#include "eval/measurement.hpp"
+#include "eval/space_parts.hpp"
+
+namespace cmap {
+namespace {
+
+Box3d box_around(const MapPair& pair) {
+  const Box3d a = pair.reference.index.bounds(), b = pair.estimate.index.bounds();
+  return {a.min.cwiseMin(b.min), a.max.cwiseMax(b.max)};
+}
+
+/// Numbers the blocks in the order in which they are first asked for.
+class BlockNumbers {
+ public:
+  BlockNumbers(const Box3d& box, double block_m) : frame_(box, block_m) {}
+
+  std::uint32_t operator()(const Eigen::Vector3d& world) {
+    const VoxelKey key = frame_.key(world);
+    std::uint32_t& number = numbers_[key];  // 0 where it is new
+    if (number == 0) {
+      keys_.push_back(frame_.index(key));
+      number = static_cast<std::uint32_t>(keys_.size());
+    }
+    return number - 1;
+  }
+  const std::vector<std::array<std::int64_t, 3>>& keys() const { return keys_; }
+
+ private:
+  VoxelFrame frame_;
+  VoxelMap<std::uint32_t> numbers_;
+  std::vector<std::array<std::int64_t, 3>> keys_;
+};
+
+/// Blocks by ascending key.
+BlockSums sorted(double block_m, const std::vector<std::array<std::int64_t, 3>>& keys, const MetricSums& sums) {
+  std::vector<std::size_t> order(keys.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::ranges::sort(order, {}, [&](std::size_t i) { return keys[i]; });
+  BlockSums blocks{block_m, {}, {keys.size(), {}}};
+  for (std::size_t i : order) blocks.keys.push_back(keys[i]);
+  for (const auto& [name, parts] : sums.columns) {
+    std::vector<double>& column = blocks.sums.columns[name];
+    for (std::size_t i : order) column.push_back(i < parts.size() ? parts[i] : 0.0);
+  }
+  return blocks;
+}
+
+}  // namespace
+
+Intervals intervals_of(const MetricInputs& inputs, std::span<const Metric* const> metrics,
+                       const EvaluationOptions& options, std::vector<Warning>& warnings) {
+  BlockNumbers numbers(box_around(*inputs.pair), options.block_m);
+  const PartOf part_of = std::ref(numbers);
+  const MetricSums sums = sum_metrics(metrics, inputs, space_parts(*inputs.pair, part_of, part_of));
+  Intervals intervals{{}, sorted(options.block_m, numbers.keys(), sums), {}};
+  constexpr std::size_t kFew = 20;
+  if (intervals.blocks.keys.size() < kFew) {
+    warnings.push_back({"intervals_few_blocks",
+                        fmt::format("the maps fill only {} blocks of {} m: intervals from so few are too narrow",
+                                    intervals.blocks.keys.size(), options.block_m)});
+  }
+  intervals.options.n_replicates = options.bootstrap;
+  for (const Interval& interval : bootstrap(intervals.blocks, inputs.settings, intervals.options)) {
+    if (std::ranges::count(metrics, metric_of(interval.id)) > 0) intervals.metrics.push_back(interval);
+  }
+  return intervals;
+}
+
+}  // namespace cmap

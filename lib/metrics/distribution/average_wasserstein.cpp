@@ -1,0 +1,63 @@
+#include <fmt/format.h>
+
+#include "cmap/metrics/metric.hpp"
+#include "cmap/metrics/order_statistics.hpp"
+#include "metrics/distribution/wasserstein_field.hpp"
+
+namespace cmap {
+namespace {
+
+/// The median, and the distribution in steps of a twentieth.
+void add_distribution(Record& record, std::span<const VoxelDistance> voxels) {
+  constexpr std::size_t kSteps = 20;
+  std::vector<double> distances, shares;
+  for (const VoxelDistance& voxel : voxels) distances.push_back(voxel.distance_m);
+  for (std::size_t i = 0; i <= kSteps; ++i) shares.push_back(static_cast<double>(i) / static_cast<double>(kSteps));
+  const std::vector<double> ranked = quantiles(distances, shares);
+  record.add("median", ranked[kSteps / 2]);
+  std::vector<Record> cumulative;
+  for (std::size_t i = 0; i <= kSteps && !distances.empty(); ++i) {
+    cumulative.push_back(Record{}.add("share", shares[i]).add("value_m", ranked[i]));
+  }
+  record.add("cumulative", std::move(cumulative));
+}
+
+}  // namespace
+
+namespace catalog {
+
+extern constinit const Metric average_wasserstein{
+    .info = {.id = "average_wasserstein",
+             .symbol = "AWD",
+             .title = "average Wasserstein distance",
+             .group = "distribution",
+             .unit = "m",
+             .better = "lower",
+             .definition = "Mean over voxels that both maps fill of the 2-Wasserstein distance between the Gaussians of "
+                           "their points."},
+    .prepare = prepare_wasserstein,
+    .sides = Sides::kEstimate,
+    .columns = [](const MetricSettings&) { return std::vector<std::string>{"n", "distance"}; },
+    .each_voxel = [](const MetricInputs& inputs, Side, const std::function<void(const VoxelTerms&)>& use) {
+      for (const VoxelDistance& voxel : inputs.wasserstein) {
+        const double terms[]{1.0, voxel.distance_m};
+        use({voxel.index, inputs.options().awd_voxel_m, terms});
+      }
+    },
+    .value = [](const PairSums& sums, const MetricSettings& settings) {
+      Record record{.value = sums.estimate[1] / sums.estimate[0],
+                    .parameters = wasserstein_parameters(settings.options)};
+      return record.add("n_voxels", static_cast<std::uint64_t>(sums.estimate[0]));
+    },
+    .finish = [](Record& record, const MetricInputs& inputs, std::span<const double>, std::vector<Warning>& warnings) {
+      const MetricOptions& o = inputs.options();
+      if (inputs.wasserstein.empty()) {
+        warnings.push_back({"average_wasserstein_no_voxels",
+                            fmt::format("no {} m voxel holds {} points of both maps: no AWD and no SCS", o.awd_voxel_m,
+                                        o.awd_min_points)});
+      }
+      add_distribution(record, inputs.wasserstein);
+    }};
+
+}  // namespace catalog
+}  // namespace cmap

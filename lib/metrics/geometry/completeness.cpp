@@ -1,0 +1,20 @@
+#include "cmap/metrics/catalog.hpp"
+#include "metrics/geometry/band_counts.hpp"
+
+namespace cmap::catalog {
+
+extern constinit const Metric completeness{
+    .info = {.id = "completeness",
+             .title = "completeness (recall)",
+             .group = "geometry",
+             .unit = "1",
+             .better = "higher",
+             .definition = "Share of reference points within the threshold of the estimate (recall).",
+             .per_threshold = true,
+             .share = true},
+    .sums_of = &fitness,
+    .value = [](const PairSums& sums, const MetricSettings& settings) {
+      return shares_record(sums.reference, settings);
+    }};
+
+}  // namespace cmap::catalog

@@ -1,0 +1,30 @@
+#include <numeric>
+
+#include "cmap/metrics/catalog.hpp"
+#include "metrics/geometry/band_counts.hpp"
+
+namespace cmap::catalog {
+
+extern constinit const Metric overlap{
+    .info = {.id = "overlap",
+             .symbol = "Overlap",
+             .title = "overlap",
+             .group = "geometry",
+             .unit = "1",
+             .better = "higher",
+             .definition = "Share of estimated points within the overlap distance of the reference.",
+             .share = true,
+             .paper_factor = 100.0,
+             .paper_unit = "%"},
+    .sums_of = &fitness,
+    .value = [](const PairSums& sums, const MetricSettings& settings) {
+      const double distance_m = settings.options.overlap_distance_m;
+      const double n = sum_within(sums.estimate, settings, distance_m);
+      const double share = share_within(sums.estimate, settings, distance_m);
+      Record record{.value = share, .parameters = {{"overlap_distance_m", distance_m}}};
+      record.add("n", static_cast<std::uint64_t>(n));
+      return record.add("n_estimate", static_cast<std::uint64_t>(std::accumulate(sums.estimate.begin(),
+                                                                                sums.estimate.end(), 0.0)));
+    }};
+
+}  // namespace cmap::catalog
