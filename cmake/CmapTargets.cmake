@@ -32,20 +32,21 @@ function(cmap_add_module name)
   install(TARGETS cmap_lib_${name} EXPORT cmapTargets)
 endfunction()
 
-# cmap_add_tests(module name ...) makes one CTest test "<module>/<name>" of each <name>_test.cpp in this folder, and the
-# target tests_<module> that builds them all.
+# cmap_add_tests(module name ...) adds each <name>_test.cpp of this folder to the program tests_<module>, one link for all of
+# them, and makes the CTest test "<module>/<name>" of it.
 function(cmap_add_tests module)
-  if(NOT TARGET tests_${module})
-    add_custom_target(tests_${module})
-  endif()
-  foreach(name IN LISTS ARGN)
-    set(target ${module}_${name}_test)
-    add_executable(${target} ${name}_test.cpp)
+  set(target tests_${module})
+  if(NOT TARGET ${target})
+    add_executable(${target} ${PROJECT_SOURCE_DIR}/tests/test_main.cpp)
     cmap_set_compile_options(${target})
     target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests ${PROJECT_SOURCE_DIR}/lib)
-    target_link_libraries(${target} PRIVATE cmap::${module} GTest::gtest_main)
-    add_dependencies(tests_${module} ${target})
-    add_test(NAME ${module}/${name} COMMAND ${target})
+    target_link_libraries(${target} PRIVATE cmap::${module} GTest::gtest)
+    # Test files name their helpers as they like.
+    set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)
+  endif()
+  foreach(name IN LISTS ARGN)
+    target_sources(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cpp)
+    add_test(NAME ${module}/${name} COMMAND ${target} ${name})
     set_tests_properties(${module}/${name} PROPERTIES TIMEOUT 600 SKIP_REGULAR_EXPRESSION "\\[  PASSED  \\] 0 tests"
       ENVIRONMENT "CMAP_SOURCE_DIR=${PROJECT_SOURCE_DIR};CMAP_BINARY_DIR=${PROJECT_BINARY_DIR}")
   endforeach()

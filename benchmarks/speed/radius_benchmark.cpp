@@ -6,8 +6,8 @@
 #include <Eigen/LU>
 
 #include "cmap/core/color.hpp"
-#include "cmap/metrics/local_color_recall.hpp"
 #include "cmap/metrics/catalog.hpp"
+#include "cmap/metrics/local_color_recall.hpp"
 #include "cmap/metrics/metric_sums.hpp"
 #include "town_pair.hpp"
 

@@ -101,7 +101,11 @@ Record color_map_evaluation_record(MetricInputs& inputs) {
 }
 
 Record summary_record(const CloudAnalyzerSummary& s) {
-  return Record{}.add("mean", s.mean_m).add("median", s.median_m).add("max", s.max_m).add("std", s.standard_deviation_m);
+  return Record{}
+      .add("mean", s.mean_m)
+      .add("median", s.median_m)
+      .add("max", s.max_m)
+      .add("std", s.standard_deviation_m);
 }
 
 Record cloudanalyzer_evaluate(const MetricInputs& inputs) {
@@ -119,9 +123,9 @@ Record cloudanalyzer_evaluate(const MetricInputs& inputs) {
   record.add("chamfer_distance", 0.5 * (forth.mean_m + back.mean_m));
   record.add("hausdorff_distance", std::max(forth.max_m, back.max_m));
   record.add("f1_scores", std::move(scores)).add("auc", curve.auc);
-  return record.add("distance_stats", Record{}
-                                          .add("source_to_target", summary_record(forth))
-                                          .add("target_to_source", summary_record(back)));
+  return record.add(
+      "distance_stats",
+      Record{}.add("source_to_target", summary_record(forth)).add("target_to_source", summary_record(back)));
 }
 
 /// Without voxels it prints neither AWD nor SCS.
@@ -140,9 +144,9 @@ Record cloudanalyzer_map_evaluate(const MetricInputs& inputs) {
     record.add(fmt::format("accuracy@{:.3f}m", t), cloudanalyzer_share_within(forth, t));
     record.add(fmt::format("completeness@{:.3f}m", t), cloudanalyzer_share_within(back, t));
   }
-  record.add(fmt::format("fscore@{:.3f}m", kThresholds_m[0]),
-             f_score(cloudanalyzer_share_within(forth, kThresholds_m[0]),
-                     cloudanalyzer_share_within(back, kThresholds_m[0])));
+  record.add(
+      fmt::format("fscore@{:.3f}m", kThresholds_m[0]),
+      f_score(cloudanalyzer_share_within(forth, kThresholds_m[0]), cloudanalyzer_share_within(back, kThresholds_m[0])));
   const CloudAnalyzerStructure structure =
       cloudanalyzer_structure(gaussian_pairs(*inputs.pair, kVoxel_m, kMinPoints), kRadiusVoxels);
   if (std::isfinite(structure.awd_m)) record.add("awd_m", structure.awd_m);

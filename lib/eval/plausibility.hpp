@@ -1,12 +1,12 @@
 #pragma once
 
-#include "eval/cloud_body.hpp"
-#include "eval/coordinate_step.hpp"
-#include "cmap/eval/options.hpp"
 #include "cmap/core/warning.hpp"
+#include "cmap/eval/options.hpp"
 #include "cmap/metrics/geometry.hpp"
 #include "cmap/metrics/map_pair.hpp"
 #include "cmap/metrics/record.hpp"
+#include "eval/cloud_body.hpp"
+#include "eval/coordinate_step.hpp"
 
 // What is probably wrong with the maps, said once each and never in the way: every check appends at most one warning a
 // map, and costs a sample of the points or less. `which` is "reference", "estimate" or "map". The ids:
@@ -46,8 +46,9 @@ void warn_about_points(std::string_view which, const PointBlocks& points, const 
                        const std::optional<CoordinateStep>& step, const EvaluationOptions& options,
                        std::vector<Warning>& warnings);
 
-/// Thresholds below the reference's spacing that most of the estimate misses (`fitness` per threshold), where its distances are such as that
-/// spacing alone would make them: not those of other errors, nor of an estimate with the reference's own points.
+/// Thresholds below the reference's spacing that most of the estimate misses (`fitness` per threshold), where its
+/// distances are such as that spacing alone would make them: not those of other errors, nor of an estimate with the
+/// reference's own points.
 void warn_about_spacing(const SampledSpacing& reference, const NearestField& nearest_in_reference,
                         std::span<const Record> fitness, std::vector<Warning>& warnings);
 

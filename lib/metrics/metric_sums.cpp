@@ -152,8 +152,8 @@ void sum_points(std::span<const Metric* const> metrics, const MetricInputs& inpu
 }
 
 /// The sums of one metric's voxels, by part.
-std::vector<ColumnSums> voxel_sums(const Metric& metric, const MetricInputs& inputs, Side side,
-                                   const SpaceParts& parts, std::size_t n_columns) {
+std::vector<ColumnSums> voxel_sums(const Metric& metric, const MetricInputs& inputs, Side side, const SpaceParts& parts,
+                                   std::size_t n_columns) {
   std::vector<ColumnSums> by_part(1, ColumnSums(n_columns));
   if (!parts.of_voxel && metric.add_voxels != nullptr) {
     metric.add_voxels(inputs, side, by_part.front());
@@ -239,7 +239,8 @@ MetricFormulas::MetricFormulas(const MetricSums& sums, const MetricSettings& set
     const auto same = std::ranges::find(formulas_, &source, [](const Formula& f) { return &summed(*f.metric); });
     Formula formula = same == formulas_.end() ? Formula{metric, {}} : Formula{metric, same->columns};
     for (const Side side : {Side::kEstimate, Side::kReference}) {
-      if (same == formulas_.end() && has_side(source, side)) formula.columns.of(side) = find_columns(sums, source, side);
+      if (same == formulas_.end() && has_side(source, side))
+        formula.columns.of(side) = find_columns(sums, source, side);
     }
     const Columns& needed = formula.columns.of(source.sides == Sides::kReference ? Side::kReference : Side::kEstimate);
     const bool needs_both = source.sides == Sides::kBoth && metric->info.needs_reference;

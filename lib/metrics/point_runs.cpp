@@ -6,7 +6,7 @@
 namespace cmap {
 namespace {
 
-constexpr std::size_t kRunSlots = 4096;     // whose values stay in the first caches
+constexpr std::size_t kRunSlots = 4096;  // whose values stay in the first caches
 constexpr std::size_t kTaskSlots = 1 << 16;
 
 /// The band of a distance: thresholds mean what was typed (spatial/threshold.hpp).

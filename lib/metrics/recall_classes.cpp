@@ -1,11 +1,10 @@
-#include "cmap/metrics/local_color_recall.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
 #include "cmap/core/parallel.hpp"
+#include "cmap/metrics/local_color_recall.hpp"
 #include "cmap/spatial/radius.hpp"
 
 namespace cmap {

@@ -1,11 +1,10 @@
-#include "cmap/metrics/point_spacing.hpp"
-
 #include <array>
 #include <cmath>
 
 #include "cmap/core/exact_sum.hpp"
 #include "cmap/core/parallel.hpp"
 #include "cmap/metrics/order_statistics.hpp"
+#include "cmap/metrics/point_spacing.hpp"
 #include "cmap/spatial/k_nearest.hpp"
 #include "cmap/spatial/nearest.hpp"
 

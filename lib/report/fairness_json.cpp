@@ -31,12 +31,9 @@ Json intervals_json(const Intervals& intervals) {
   for (const Interval& v : intervals.metrics) {
     add_entry(metrics, v.id, v.threshold_m, {{"lower", json_number(v.lower)}, {"upper", json_number(v.upper)}});
   }
-  return {{"method", "spatial block bootstrap, percentiles"},
-          {"level", intervals.options.level},
-          {"replicates", intervals.options.n_replicates},
-          {"seed", intervals.options.seed},
-          {"n_blocks", intervals.blocks.keys.size()},
-          {"metrics", metrics},
+  return {{"method", "spatial block bootstrap, percentiles"}, {"level", intervals.options.level},
+          {"replicates", intervals.options.n_replicates},     {"seed", intervals.options.seed},
+          {"n_blocks", intervals.blocks.keys.size()},         {"metrics", metrics},
           {"blocks", block_sums_json(intervals.blocks)}};
 }
 
@@ -63,9 +60,8 @@ Json sensitivity_json(const Sensitivity& sensitivity) {
     add_entry(metrics, range.id, range.threshold_m,
               {{"lowest", json_number(range.lowest)}, {"highest", json_number(range.highest)}});
   }
-  return {{"translation_m", sensitivity.translation_m},
-          {"rotation_deg", sensitivity.rotation_deg},
-          {"metrics", metrics}};
+  return {
+      {"translation_m", sensitivity.translation_m}, {"rotation_deg", sensitivity.rotation_deg}, {"metrics", metrics}};
 }
 
 Json block_sums_json(const BlockSums& blocks) {

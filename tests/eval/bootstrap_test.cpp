@@ -135,7 +135,8 @@ TEST(Bootstrap, CoversTheTruthAtItsLevel) {
     const BootstrapOptions options{.n_replicates = 200, .seed = 1000u * static_cast<unsigned>(trial)};
     const Interval found = chamfer_of(bootstrap(blocks_of(means), kSettings, options));
     covered += found.lower <= 1.0 && 1.0 <= found.upper ? 1 : 0;
-    const Interval difference = chamfer_of(bootstrap_difference(blocks_of(means), blocks_of(better), kSettings, options));
+    const Interval difference =
+        chamfer_of(bootstrap_difference(blocks_of(means), blocks_of(better), kSettings, options));
     difference_covered += difference.lower <= -0.1 && -0.1 <= difference.upper ? 1 : 0;
     EXPECT_LT(difference.upper - difference.lower, 0.3 * (found.upper - found.lower)) << "what both share cancels";
   }

@@ -350,7 +350,8 @@ TEST(Evaluation, ThresholdsMeanWhatWasTyped) {
   EXPECT_EQ(fields(found, "color_distance").at("n_unmatched_estimate"), 0);
   EXPECT_EQ(fields(found, "delta_e").at("estimate_to_reference").at("n"), 12);
   EXPECT_EQ(fields(found, "color_distance_exposure_free").at("n_pairs"), 12);
-  EXPECT_EQ(test::peer_fields(found, "open3d").at("per_threshold")[0].at("fitness"), 0.0) << "other tools compare as they do";
+  EXPECT_EQ(test::peer_fields(found, "open3d").at("per_threshold")[0].at("fitness"), 0.0)
+      << "other tools compare as they do";
   EXPECT_EQ(test::peer_fields(found, "cloudanalyzer").at("map-evaluate").at("accuracy@0.100m"), 0.0);
 }
 

@@ -119,9 +119,7 @@ TEST(EvaluateMap, RefusesWhatCannotBeEvaluated) {
 }
 
 TEST(EvaluateMap, TheSameForAnyNumberOfThreads) {
-  const auto metrics = [] {
-    return fields_of(evaluate_map(painted_sheet(100'000, 3), {}).metrics).dump();
-  };
+  const auto metrics = [] { return fields_of(evaluate_map(painted_sheet(100'000, 3), {}).metrics).dump(); };
   const std::string expected = metrics();
   const ThreadLimit limit(1);
   EXPECT_EQ(metrics(), expected);

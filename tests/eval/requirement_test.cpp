@@ -19,9 +19,9 @@ MetricRecords records(double fidelity_db, double psnr_db) {
   add("color_fidelity", Record{.value = fidelity_db});
   add("color_psnr", Record{.value = psnr_db});
   add("chamfer", Record{.value = 0.125}.add("variants", Record{}.add("l1_mean", 0.0625)).add("note", "text"));
-  add("accuracy", Record{}.add("per_threshold",
-                               std::vector{Record{.threshold_m = 0.2, .value = 0.05}.add("median", 0.04),
-                                           Record{.threshold_m = 0.1, .value = NAN}.add("median", NAN)}));
+  add("accuracy",
+      Record{}.add("per_threshold", std::vector{Record{.threshold_m = 0.2, .value = 0.05}.add("median", 0.04),
+                                                Record{.threshold_m = 0.1, .value = NAN}.add("median", NAN)}));
   add("color_distance_by_range", Record{}.add("per_range", std::vector{Record{.value = 0.01}.add("lo_m", 0.0)}));
   return MetricRecords(std::move(made));
 }

@@ -1,7 +1,6 @@
-#include "cmap/metrics/exposure_gains.hpp"
-
 #include <cmath>
 
+#include "cmap/metrics/exposure_gains.hpp"
 #include "metrics/measured.hpp"
 
 namespace cmap {

@@ -61,7 +61,8 @@ TEST(ColorDistance, PointsWithoutColorAreLeftOut) {
   clouds.estimate.colors = Array<RgbF>{{0.5f, 0, 0}, {0, 0, 0}, {nan, nan, nan}};
   EXPECT_EQ(clouds.pair().reference.n_without_color, 1U);
   const Record cd = color_distance(clouds);
-  for (const char* direction : {"estimate_to_reference", "reference_to_estimate"}) EXPECT_EQ(number(cd, direction), 0.5);
+  for (const char* direction : {"estimate_to_reference", "reference_to_estimate"})
+    EXPECT_EQ(number(cd, direction), 0.5);
   for (const char* map : {"estimate", "reference"}) {
     EXPECT_EQ(number(cd, std::string("n_") + map), 1);
     EXPECT_EQ(number(cd, std::string("n_unmatched_") + map), 2);

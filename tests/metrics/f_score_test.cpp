@@ -1,7 +1,6 @@
-#include "cmap/metrics/geometry.hpp"
-
 #include <algorithm>
 
+#include "cmap/metrics/geometry.hpp"
 #include "metrics/measured.hpp"
 
 namespace cmap {

@@ -104,7 +104,8 @@ TEST(SpatialConsistency, EqualDistancesVaryByExactlyZero) {
 TEST(SpatialConsistency, EqualsTheDefinition) {
   for (const std::uint64_t radius : {1u, 2u, 5u, 20u}) {
     const Voxels voxels = random_voxels(6, 2);
-    EXPECT_NEAR_RELATIVE(*consistency_of(voxels, radius).value, by_definition(voxels, static_cast<std::int64_t>(radius)), test::kSummation);
+    EXPECT_NEAR_RELATIVE(*consistency_of(voxels, radius).value,
+                         by_definition(voxels, static_cast<std::int64_t>(radius)), test::kSummation);
   }
 }
 

@@ -7,14 +7,14 @@
 
 namespace cmap {
 
-/// A sum of doubles that neither the order nor the grouping of its terms changes: every term is rounded to a multiple of
-/// 2^-72 (by at most 1.1e-22, ties to even), and those are added without error. The sums of parts, merged, have the bits
-/// of the sum of the whole. NaN, infinity and terms from 2^262 on are refused with std::invalid_argument.
+/// A sum of doubles that neither the order nor the grouping of its terms changes: every term is rounded to a multiple
+/// of 2^-72 (by at most 1.1e-22, ties to even), and those are added without error. The sums of parts, merged, have the
+/// bits of the sum of the whole. NaN, infinity and terms from 2^262 on are refused with std::invalid_argument.
 ///
 /// Terms gather in three windows of multiples of 2^-8, 2^-40 and 2^-72, whose sums are exact in double for 2^16 terms
-/// (pre-rounding after Demmel and Nguyen 2015, "Parallel Reproducible Summation"), and then move to a wide integer (as in
-/// Neal 2015, "Fast exact summation using small and large superaccumulators").
-/// Not thread-safe: every thread sums a part of its own.
+/// (pre-rounding after Demmel and Nguyen 2015, "Parallel Reproducible Summation"), and then move to a wide integer (as
+/// in Neal 2015, "Fast exact summation using small and large superaccumulators"). Not thread-safe: every thread sums a
+/// part of its own.
 class ExactSum {
  public:
   void add(double term) {

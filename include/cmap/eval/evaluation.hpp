@@ -55,12 +55,12 @@ struct Evaluation {
   double overlap = 0.0;  ///< share of estimated points within the overlap distance
   double rmse_m = 0.0;
   MetricRecords metrics = {};
-  std::vector<PeerRecord> peers = {};             ///< of options.as
-  std::optional<Intervals> intervals = {};        ///< where options.bootstrap asks for them
-  std::optional<ObservedPart> unobserved = {};    ///< where options.observed asks for it
-  std::optional<Sensitivity> sensitivity = {};    ///< where options.sensitivity asks for it, by who evaluated
-  std::optional<Alignment> alignment = {};        ///< what gave T_ref_est, where it was not given
-  MetricRecords metrics_before = {};              ///< of the estimate as it came, where it was aligned
+  std::vector<PeerRecord> peers = {};           ///< of options.as
+  std::optional<Intervals> intervals = {};      ///< where options.bootstrap asks for them
+  std::optional<ObservedPart> unobserved = {};  ///< where options.observed asks for it
+  std::optional<Sensitivity> sensitivity = {};  ///< where options.sensitivity asks for it, by who evaluated
+  std::optional<Alignment> alignment = {};      ///< what gave T_ref_est, where it was not given
+  MetricRecords metrics_before = {};            ///< of the estimate as it came, where it was aligned
   std::vector<Warning> warnings = {};
   std::vector<std::pair<std::string, double>> stage_seconds = {};
   MapPair pair;                                 ///< both maps after transform, crop and thinning, with their neighbors

@@ -17,8 +17,8 @@ struct UnobservedPoints {
 /// The metrics over those points alone that the other map could have seen.
 struct ObservedPart {
   Observed method = Observed::kNone;
-  double column_m = 0.0;             ///< of the columns in which the other map has points
-  std::uint64_t n_positions = 0;     ///< of the sensor
+  double column_m = 0.0;          ///< of the columns in which the other map has points
+  std::uint64_t n_positions = 0;  ///< of the sensor
   BothSides<UnobservedPoints> left_out = {};
   std::vector<SummedValue> values = {};  ///< of the metrics that are sums
 };

@@ -23,11 +23,11 @@ enum class Observed { kNone, kAuto, kSensor };
 /// any. Command line, configuration files and reports name the fields as evaluation_option_specs() does.
 struct EvaluationOptions : MetricOptions {
   std::vector<std::string> metrics;  ///< groups or metric ids; empty: color, geometry, distribution, as far as possible
-  std::optional<double> voxel_m;  ///< thin both maps first
-  std::optional<Box3d> crop;      ///< reference frame
-  std::vector<std::string> as;    ///< other tools, as peer_tools() names them
-  std::uint64_t bootstrap = 0;    ///< replicates for confidence intervals; 0: none
-  double block_m = 10.0;          ///< of the bootstrap
+  std::optional<double> voxel_m;     ///< thin both maps first
+  std::optional<Box3d> crop;         ///< reference frame
+  std::vector<std::string> as;       ///< other tools, as peer_tools() names them
+  std::uint64_t bootstrap = 0;       ///< replicates for confidence intervals; 0: none
+  double block_m = 10.0;             ///< of the bootstrap
   Observed observed = Observed::kNone;
   VisibilityOptions visibility = {};  ///< of the sensor
   std::string align = "none";         ///< icp, plane, gicp, sim3, global, trajectory, tanksandtemples

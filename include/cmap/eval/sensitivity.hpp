@@ -21,8 +21,8 @@ struct SensitivityRange {
   double lowest, highest;
 };
 
-/// How far every metric goes when the alignment is a little off. A score that moves more than two methods differ by says
-/// nothing about which one is better.
+/// How far every metric goes when the alignment is a little off. A score that moves more than two methods differ by
+/// says nothing about which one is better.
 struct Sensitivity {
   double translation_m = 0.0, rotation_deg = 0.0;
   std::vector<SensitivityRange> ranges;  ///< in the order of reports, the largest threshold first

@@ -13,7 +13,8 @@
 
 // How a metric is made: a source lib/metrics/{color,geometry,distribution,entropy,density}/NAME.cpp defines the Metric
 // cmap::catalog::NAME, and the line of that name in the module's CMakeLists.txt puts it into metric_list() and
-// cmap/metrics/catalog.hpp, and asks for tests/metrics/NAME_test.cpp. Command line, reports, tables, leaderboards and --help follow.
+// cmap/metrics/catalog.hpp, and asks for tests/metrics/NAME_test.cpp. Command line, reports, tables, leaderboards and
+// --help follow.
 
 namespace cmap {
 
@@ -41,7 +42,8 @@ struct PointRun {
   Side side;
   std::size_t begin = 0, size = 0;                        ///< slots
   std::span<const double> distance_m = {}, sq_dist = {};  ///< of the nearest point of the other map; empty without one
-  std::span<const double> color_distance = {};  ///< to it, unit RGB; NaN where either has no color; empty without colors
+  std::span<const double> color_distance =
+      {};  ///< to it, unit RGB; NaN where either has no color; empty without colors
   /// The distances ordered by band: those of band b are at band_begin[b] to band_begin[b + 1].
   std::span<const std::size_t> band_begin = {};
   std::span<const double> banded_distance_m = {}, banded_sq_dist = {};

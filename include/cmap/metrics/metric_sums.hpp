@@ -12,8 +12,8 @@
 
 namespace cmap {
 
-/// The sums of metrics over parts of space (all of it, blocks, or what was observed and the rest): for each column, named
-/// "chamfer.estimate.distance", one sum for each part.
+/// The sums of metrics over parts of space (all of it, blocks, or what was observed and the rest): for each column,
+/// named "chamfer.estimate.distance", one sum for each part.
 struct MetricSums {
   std::size_t n_parts = 1;
   std::map<std::string, std::vector<double>> columns = {};
@@ -22,7 +22,7 @@ struct MetricSums {
 /// Parts of space. Points and voxels of no part given are all in part 0.
 struct SpaceParts {
   std::size_t n = 1;
-  BothSides<Array<std::uint32_t>> of_slots = {};                       ///< empty: there is one part
+  BothSides<Array<std::uint32_t>> of_slots = {};                             ///< empty: there is one part
   std::function<std::uint32_t(const Eigen::Vector3d& world)> of_voxel = {};  ///< by its center; may add parts
 };
 
@@ -40,8 +40,8 @@ struct SummedValue {
 /// The values that a record holds: its own, or those of its thresholds.
 std::vector<SummedValue> values_of(std::string_view id, const Record& record);
 
-/// The metrics whose columns are among the sums, ready to be computed for any weights of the parts. The sums must outlive
-/// it.
+/// The metrics whose columns are among the sums, ready to be computed for any weights of the parts. The sums must
+/// outlive it.
 class MetricFormulas {
  public:
   MetricFormulas(const MetricSums& sums, const MetricSettings& settings);

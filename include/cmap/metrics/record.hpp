@@ -19,15 +19,15 @@ struct Number {
   std::variant<double, std::uint64_t, std::string, std::vector<double>> value;
 };
 
-/// What was found of one metric, or of a part of it; reports hold the same tree as JSON. Units are the metric's unless a
-/// number's name ends in its own.
+/// What was found of one metric, or of a part of it; reports hold the same tree as JSON. Units are the metric's unless
+/// a number's name ends in its own.
 struct Record {
-  std::optional<double> threshold_m = {};   ///< where it is one of per_threshold
-  std::optional<double> value = {};         ///< NaN: nothing qualified; none: the record has no single value
-  std::vector<Number> numbers = {};         ///< beside the value
-  std::vector<Number> parameters = {};      ///< that the value depends on
-  std::vector<NamedRecord> parts = {};      ///< a direction, the reference's own
-  std::vector<RecordRows> rows = {};        ///< per_threshold, per_range, a distribution
+  std::optional<double> threshold_m = {};  ///< where it is one of per_threshold
+  std::optional<double> value = {};        ///< NaN: nothing qualified; none: the record has no single value
+  std::vector<Number> numbers = {};        ///< beside the value
+  std::vector<Number> parameters = {};     ///< that the value depends on
+  std::vector<NamedRecord> parts = {};     ///< a direction, the reference's own
+  std::vector<RecordRows> rows = {};       ///< per_threshold, per_range, a distribution
 
   Record& add(std::string name, double number);
   Record& add(std::string name, std::uint64_t count);

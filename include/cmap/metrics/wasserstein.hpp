@@ -48,9 +48,9 @@ std::vector<VoxelDistance> wasserstein_distances(std::span<const GaussianPair> p
 /// Their mean, NaN of none.
 double mean_distance(std::span<const VoxelDistance> voxels);
 
-/// What spatial consistency SCS averages: around every voxel the coefficient of variation (population standard deviation
-/// / mean) of the distances of the other voxels within +- radius_voxels on every axis. NaN for voxels without others, or
-/// whose others' mean is 0. The voxels must be ordered by index.
+/// What spatial consistency SCS averages: around every voxel the coefficient of variation (population standard
+/// deviation / mean) of the distances of the other voxels within +- radius_voxels on every axis. NaN for voxels without
+/// others, or whose others' mean is 0. The voxels must be ordered by index.
 std::vector<double> local_variations(std::span<const VoxelDistance> voxels, int radius_voxels);
 
 /// The mean of those that are not NaN, NaN of none.

@@ -30,10 +30,10 @@ void add_rest(Record& record, const ColorConsistency& found, const IndexedMap& m
 
 void refuse_singletons(const MetricOptions& o, const ColorConsistency& found) {
   if (o.ccs_singletons != Singletons::kRefuse || found.n_singletons.value() == 0.0) return;
-  throw UnsupportedError(
-      fmt::format("ccs-singletons: {} of the evaluated map's {} voxels of {} m hold a single point; zero or exclude says "
-                  "what they count as",
-                  found.n_singletons.value(), found.n_occupied.value(), o.ccs_voxel_m));
+  throw UnsupportedError(fmt::format(
+      "ccs-singletons: {} of the evaluated map's {} voxels of {} m hold a single point; zero or exclude says "
+      "what they count as",
+      found.n_singletons.value(), found.n_occupied.value(), o.ccs_voxel_m));
 }
 
 /// Copies of a point do not make a voxel any less a single one.
@@ -51,12 +51,8 @@ void warn_of_singletons(const MetricOptions& o, const ColorConsistency& found, s
 
 std::array<double, kColumns> terms_of(const VoxelColors& voxel, std::uint64_t min_points) {
   const bool single = voxel.n == 1, enough = !single && voxel.n >= min_points;
-  return {1.0,
-          enough ? 1.0 : 0.0,
-          single ? 1.0 : 0.0,
-          !single && voxel.one_place ? 1.0 : 0.0,
-          voxel.trace,
-          enough ? voxel.trace : 0.0};
+  return {1.0,         enough ? 1.0 : 0.0,        single ? 1.0 : 0.0, !single && voxel.one_place ? 1.0 : 0.0,
+          voxel.trace, enough ? voxel.trace : 0.0};
 }
 
 }  // namespace
@@ -70,58 +66,65 @@ extern constinit const Metric color_consistency{
              .group = "color",
              .unit = "unit RGB^2",
              .better = "lower",
-             .definition = "Mean over the estimate's voxels of the trace of the color covariance: how much colors scatter "
-                           "within a voxel. One of a single point counts as 0 or is left out, as the parameters say.",
+             .definition =
+                 "Mean over the estimate's voxels of the trace of the color covariance: how much colors scatter "
+                 "within a voxel. One of a single point counts as 0 or is left out, as the parameters say.",
              .needs_color = true,
              .needs_reference = false,
              .paper_factor = 100.0,
              .paper_unit = "unit RGB^2 x 100"},
-    .prepare = [](MetricInputs& inputs) {
-      const MetricOptions& o = inputs.options();
-      for (const Side side : inputs.sides()) {
-        inputs.color_consistency.of(side) =
-            cmap::color_consistency(inputs.map(side), o.ccs_voxel_m, o.ccs_min_points);
-      }
-    },
-    .columns = [](const MetricSettings&) {
-      return std::vector<std::string>{"occupied", "enough", "single", "one_place", "trace", "trace_of_enough"};
-    },
-    .each_voxel = [](const MetricInputs& inputs, Side side, const std::function<void(const VoxelTerms&)>& use) {
-      const MetricOptions& o = inputs.options();
-      for (const VoxelColors& voxel : voxel_colors(inputs.map(side), o.ccs_voxel_m)) {
-        const std::array<double, kColumns> terms = terms_of(voxel, o.ccs_min_points);
-        use({voxel.index, o.ccs_voxel_m, terms});
-      }
-    },
-    .add_voxels = [](const MetricInputs& inputs, Side side, std::span<ExactSum> sums) {
-      const ColorConsistency& found = *inputs.color_consistency.of(side);
-      const ExactSum* const in_columns[kColumns]{&found.n_occupied,  &found.n_enough, &found.n_singletons,
-                                                 &found.n_one_place, &found.trace,    &found.trace_of_enough};
-      for (std::size_t column = 0; column < kColumns; ++column) sums[column] += *in_columns[column];
-    },
-    .value = [](const PairSums& sums, const MetricSettings& settings) {
-      const MetricOptions& o = settings.options;
-      Record record = consistency_of(sums.estimate, o.ccs_singletons);
-      record.parameters = {{"voxel_m", o.ccs_voxel_m},
-                           {"singletons", singletons_name(o.ccs_singletons)},
-                           {"min_points", o.ccs_min_points}};
-      if (!sums.reference.empty()) record.add("reference", consistency_of(sums.reference, o.ccs_singletons));
-      return record;
-    },
-    .finish = [](Record& record, const MetricInputs& inputs, std::span<const double>, std::vector<Warning>& warnings) {
-      const MetricOptions& o = inputs.options();
-      const ColorConsistency& found = *inputs.color_consistency.estimate;
-      refuse_singletons(o, found);
-      if (record.number("n_voxels") == 0.0) {
-        warnings.push_back({"color_consistency_no_voxels",
-                            fmt::format("no {} m voxel of the evaluated map holds {} points: no color consistency",
-                                        o.ccs_voxel_m, o.ccs_min_points)});
-      }
-      warn_of_singletons(o, found, warnings);
-      add_rest(record, found, inputs.estimate);
-      if (inputs.pair == nullptr) return;
-      add_rest(record.parts[0].record, *inputs.color_consistency.reference, inputs.pair->reference);
-    }};
+    .prepare =
+        [](MetricInputs& inputs) {
+          const MetricOptions& o = inputs.options();
+          for (const Side side : inputs.sides()) {
+            inputs.color_consistency.of(side) =
+                cmap::color_consistency(inputs.map(side), o.ccs_voxel_m, o.ccs_min_points);
+          }
+        },
+    .columns =
+        [](const MetricSettings&) {
+          return std::vector<std::string>{"occupied", "enough", "single", "one_place", "trace", "trace_of_enough"};
+        },
+    .each_voxel =
+        [](const MetricInputs& inputs, Side side, const std::function<void(const VoxelTerms&)>& use) {
+          const MetricOptions& o = inputs.options();
+          for (const VoxelColors& voxel : voxel_colors(inputs.map(side), o.ccs_voxel_m)) {
+            const std::array<double, kColumns> terms = terms_of(voxel, o.ccs_min_points);
+            use({voxel.index, o.ccs_voxel_m, terms});
+          }
+        },
+    .add_voxels =
+        [](const MetricInputs& inputs, Side side, std::span<ExactSum> sums) {
+          const ColorConsistency& found = *inputs.color_consistency.of(side);
+          const ExactSum* const in_columns[kColumns]{&found.n_occupied,  &found.n_enough, &found.n_singletons,
+                                                     &found.n_one_place, &found.trace,    &found.trace_of_enough};
+          for (std::size_t column = 0; column < kColumns; ++column) sums[column] += *in_columns[column];
+        },
+    .value =
+        [](const PairSums& sums, const MetricSettings& settings) {
+          const MetricOptions& o = settings.options;
+          Record record = consistency_of(sums.estimate, o.ccs_singletons);
+          record.parameters = {{"voxel_m", o.ccs_voxel_m},
+                               {"singletons", singletons_name(o.ccs_singletons)},
+                               {"min_points", o.ccs_min_points}};
+          if (!sums.reference.empty()) record.add("reference", consistency_of(sums.reference, o.ccs_singletons));
+          return record;
+        },
+    .finish =
+        [](Record& record, const MetricInputs& inputs, std::span<const double>, std::vector<Warning>& warnings) {
+          const MetricOptions& o = inputs.options();
+          const ColorConsistency& found = *inputs.color_consistency.estimate;
+          refuse_singletons(o, found);
+          if (record.number("n_voxels") == 0.0) {
+            warnings.push_back({"color_consistency_no_voxels",
+                                fmt::format("no {} m voxel of the evaluated map holds {} points: no color consistency",
+                                            o.ccs_voxel_m, o.ccs_min_points)});
+          }
+          warn_of_singletons(o, found, warnings);
+          add_rest(record, found, inputs.estimate);
+          if (inputs.pair == nullptr) return;
+          add_rest(record.parts[0].record, *inputs.color_consistency.reference, inputs.pair->reference);
+        }};
 
 }  // namespace catalog
 }  // namespace cmap

@@ -36,32 +36,37 @@ extern constinit const Metric color_distance{
              .needs_color = true,
              .paper_factor = 255.0,
              .paper_unit = "of 255"},
-    .columns = [](const MetricSettings&) { return std::vector<std::string>{"color", "n"}; },
+    .columns =
+        [](const MetricSettings&) {
+          return std::vector<std::string>{"color", "n"};
+        },
     .add = [](const PointRun& run, std::span<ExactSum> sums) { add_color_distances(run, run.color_distance, sums); },
-    .value = [](const PairSums& sums, const MetricSettings& settings) {
-      Record record{.value = mean_color_distance(sums), .parameters = {max_distance_parameter(settings.options)}};
-      record.add("value_8bit", 255.0 * *record.value);
-      add_color_directions(record, sums);
-      record.add("n_estimate", static_cast<std::uint64_t>(sums.estimate[kColoredPairsColumn]));
-      record.add("n_reference", static_cast<std::uint64_t>(sums.reference[kColoredPairsColumn]));
-      return record;
-    },
-    .finish = [](Record& record, const MetricInputs& inputs, std::span<const double>, std::vector<Warning>& warnings) {
-      if (std::isnan(*record.value)) {
-        warnings.push_back({"color_distance_no_pairs",
-                            "no pair of nearest points counts in both directions (both need a color, within "
-                            "color-max-distance): no color distance"});
-      }
-      const MapPair& pair = *inputs.pair;
-      add_without_color(record, inputs);
-      if (!inputs.options().color_max_distance_m && !record.number("n_without_color_estimate")) return;
-      const auto unmatched = [&](const IndexedMap& map, const char* n) {
-        return map.size() - static_cast<std::uint64_t>(*record.number(n));
-      };
-      const std::uint64_t of_estimate = unmatched(pair.estimate, "n_estimate");
-      record.add("n_unmatched_estimate", of_estimate);
-      record.add("n_unmatched_reference", unmatched(pair.reference, "n_reference"));
-    }};
+    .value =
+        [](const PairSums& sums, const MetricSettings& settings) {
+          Record record{.value = mean_color_distance(sums), .parameters = {max_distance_parameter(settings.options)}};
+          record.add("value_8bit", 255.0 * *record.value);
+          add_color_directions(record, sums);
+          record.add("n_estimate", static_cast<std::uint64_t>(sums.estimate[kColoredPairsColumn]));
+          record.add("n_reference", static_cast<std::uint64_t>(sums.reference[kColoredPairsColumn]));
+          return record;
+        },
+    .finish =
+        [](Record& record, const MetricInputs& inputs, std::span<const double>, std::vector<Warning>& warnings) {
+          if (std::isnan(*record.value)) {
+            warnings.push_back({"color_distance_no_pairs",
+                                "no pair of nearest points counts in both directions (both need a color, within "
+                                "color-max-distance): no color distance"});
+          }
+          const MapPair& pair = *inputs.pair;
+          add_without_color(record, inputs);
+          if (!inputs.options().color_max_distance_m && !record.number("n_without_color_estimate")) return;
+          const auto unmatched = [&](const IndexedMap& map, const char* n) {
+            return map.size() - static_cast<std::uint64_t>(*record.number(n));
+          };
+          const std::uint64_t of_estimate = unmatched(pair.estimate, "n_estimate");
+          record.add("n_unmatched_estimate", of_estimate);
+          record.add("n_unmatched_reference", unmatched(pair.reference, "n_reference"));
+        }};
 
 }  // namespace catalog
 }  // namespace cmap

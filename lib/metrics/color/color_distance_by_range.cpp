@@ -34,35 +34,38 @@ extern constinit const Metric color_distance_by_range{
              .definition = "Color distance of the nearest pairs in bins of their distance in space: separates wrong "
                            "color from wrong geometry.",
              .needs_color = true},
-    .columns = [](const MetricSettings&) {
-      std::vector<std::string> names;
-      for (std::size_t range = 0; range < kRanges; ++range) {
-        names.push_back("color " + std::to_string(range));
-        names.push_back("n " + std::to_string(range));
-      }
-      return names;
-    },
-    .add = [](const PointRun& run, std::span<ExactSum> sums) {
-      const NearestPairs pairs = run.inputs.pairs(run.side);
-      for (std::size_t i = 0; i < run.size; ++i) {
-        const std::size_t range = range_of(pairs, run.begin + i);
-        if (range == kRanges || std::isnan(run.color_distance[i])) continue;
-        sums[2 * range].add(run.color_distance[i]);
-        sums[2 * range + 1].add(1.0);
-      }
-    },
-    .value = [](const PairSums& sums, const MetricSettings&) {
-      std::vector<Record> ranges;
-      for (std::size_t range = 0; range < kRanges; ++range) {
-        const PairSums of = of_range(sums, range);
-        Record& record = ranges.emplace_back(Record{.value = mean_color_distance(of)});
-        record.add("lo_m", kRangeEdges_m[range]).add("hi_m", kRangeEdges_m[range + 1]);
-        add_color_directions(record, of);
-        record.add("n_estimate", static_cast<std::uint64_t>(of.estimate[kColoredPairsColumn]));
-        record.add("n_reference", static_cast<std::uint64_t>(of.reference[kColoredPairsColumn]));
-      }
-      return Record{}.add("per_range", std::move(ranges));
-    },
+    .columns =
+        [](const MetricSettings&) {
+          std::vector<std::string> names;
+          for (std::size_t range = 0; range < kRanges; ++range) {
+            names.push_back("color " + std::to_string(range));
+            names.push_back("n " + std::to_string(range));
+          }
+          return names;
+        },
+    .add =
+        [](const PointRun& run, std::span<ExactSum> sums) {
+          const NearestPairs pairs = run.inputs.pairs(run.side);
+          for (std::size_t i = 0; i < run.size; ++i) {
+            const std::size_t range = range_of(pairs, run.begin + i);
+            if (range == kRanges || std::isnan(run.color_distance[i])) continue;
+            sums[2 * range].add(run.color_distance[i]);
+            sums[2 * range + 1].add(1.0);
+          }
+        },
+    .value =
+        [](const PairSums& sums, const MetricSettings&) {
+          std::vector<Record> ranges;
+          for (std::size_t range = 0; range < kRanges; ++range) {
+            const PairSums of = of_range(sums, range);
+            Record& record = ranges.emplace_back(Record{.value = mean_color_distance(of)});
+            record.add("lo_m", kRangeEdges_m[range]).add("hi_m", kRangeEdges_m[range + 1]);
+            add_color_directions(record, of);
+            record.add("n_estimate", static_cast<std::uint64_t>(of.estimate[kColoredPairsColumn]));
+            record.add("n_reference", static_cast<std::uint64_t>(of.reference[kColoredPairsColumn]));
+          }
+          return Record{}.add("per_range", std::move(ranges));
+        },
     .finish = [](Record& record, const MetricInputs& inputs, std::span<const double>,
                  std::vector<Warning>&) { add_without_color(record, inputs); }};
 

@@ -14,14 +14,16 @@ extern constinit const Metric color_fidelity{
              .definition = "-20 log10 of the color distance: the color distance in decibels.",
              .needs_color = true},
     .sums_of = &color_distance,
-    .value = [](const PairSums& sums, const MetricSettings& settings) {
-      return Record{.value = -20.0 * std::log10(mean_color_distance(sums)),
-                    .parameters = {max_distance_parameter(settings.options)}};
-    },
-    .finish = [](Record& record, const MetricInputs&, std::span<const double>, std::vector<Warning>& warnings) {
-      if (!std::isinf(*record.value)) return;
-      warnings.push_back(
-          {"color_fidelity_infinite", "every color is exact: color fidelity is infinite, which is null in JSON"});
-    }};
+    .value =
+        [](const PairSums& sums, const MetricSettings& settings) {
+          return Record{.value = -20.0 * std::log10(mean_color_distance(sums)),
+                        .parameters = {max_distance_parameter(settings.options)}};
+        },
+    .finish =
+        [](Record& record, const MetricInputs&, std::span<const double>, std::vector<Warning>& warnings) {
+          if (!std::isinf(*record.value)) return;
+          warnings.push_back(
+              {"color_fidelity_infinite", "every color is exact: color fidelity is infinite, which is null in JSON"});
+        }};
 
 }  // namespace cmap::catalog

@@ -47,31 +47,38 @@ extern constinit const Metric delta_e{
              .definition = "Perceived color difference (CIEDE2000) of nearest pairs within the radius of LCR: mean, "
                            "median and 95th percentile of both directions.",
              .needs_color = true},
-    .prepare = [](MetricInputs& inputs) {
-      for (const Side side : inputs.sides()) {
-        inputs.delta_e.of(side) = differences(inputs.pairs(side), inputs.options().lcr_radius_m);
-      }
-    },
-    .columns = [](const MetricSettings&) { return std::vector<std::string>{"delta_e", "n"}; },
-    .add = [](const PointRun& run, std::span<ExactSum> sums) {
-      const Array<double>& differences = run.inputs.delta_e.of(run.side);
-      for (std::size_t slot = run.begin; slot < run.begin + run.size; ++slot) {
-        if (std::isnan(differences[slot])) continue;
-        sums[0].add(differences[slot]);
-        sums[1].add(1.0);
-      }
-    },
-    .value = [](const PairSums& sums, const MetricSettings& settings) {
-      Record record{.value = 0.5 * (sums.estimate[0] / sums.estimate[1] + sums.reference[0] / sums.reference[1]),
-                    .parameters = {{"radius_m", settings.options.lcr_radius_m}}};
-      record.add("estimate_to_reference", mean_difference(sums.estimate));
-      return record.add("reference_to_estimate", mean_difference(sums.reference));
-    },
-    .finish = [](Record& record, const MetricInputs& inputs, std::span<const double>, std::vector<Warning>&) {
-      add_quantiles(record.parts[0].record, inputs.delta_e.estimate);
-      add_quantiles(record.parts[1].record, inputs.delta_e.reference);
-      add_without_color(record, inputs);
-    }};
+    .prepare =
+        [](MetricInputs& inputs) {
+          for (const Side side : inputs.sides()) {
+            inputs.delta_e.of(side) = differences(inputs.pairs(side), inputs.options().lcr_radius_m);
+          }
+        },
+    .columns =
+        [](const MetricSettings&) {
+          return std::vector<std::string>{"delta_e", "n"};
+        },
+    .add =
+        [](const PointRun& run, std::span<ExactSum> sums) {
+          const Array<double>& differences = run.inputs.delta_e.of(run.side);
+          for (std::size_t slot = run.begin; slot < run.begin + run.size; ++slot) {
+            if (std::isnan(differences[slot])) continue;
+            sums[0].add(differences[slot]);
+            sums[1].add(1.0);
+          }
+        },
+    .value =
+        [](const PairSums& sums, const MetricSettings& settings) {
+          Record record{.value = 0.5 * (sums.estimate[0] / sums.estimate[1] + sums.reference[0] / sums.reference[1]),
+                        .parameters = {{"radius_m", settings.options.lcr_radius_m}}};
+          record.add("estimate_to_reference", mean_difference(sums.estimate));
+          return record.add("reference_to_estimate", mean_difference(sums.reference));
+        },
+    .finish =
+        [](Record& record, const MetricInputs& inputs, std::span<const double>, std::vector<Warning>&) {
+          add_quantiles(record.parts[0].record, inputs.delta_e.estimate);
+          add_quantiles(record.parts[1].record, inputs.delta_e.reference);
+          add_without_color(record, inputs);
+        }};
 
 }  // namespace catalog
 }  // namespace cmap

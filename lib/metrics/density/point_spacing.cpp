@@ -20,8 +20,9 @@ extern constinit const Metric point_spacing{
              .title = "point spacing",
              .group = "density",
              .unit = "m",
-             .definition = "Median distance from a point to the nearest other one, copies counted once: the smaller, the "
-                           "denser the map. Needs no reference.",
+             .definition =
+                 "Median distance from a point to the nearest other one, copies counted once: the smaller, the "
+                 "denser the map. Needs no reference.",
              .needs_reference = false},
     .finish = [](Record& record, const MetricInputs& inputs, std::span<const double>, std::vector<Warning>& warnings) {
       const PointSpacing spacing = cmap::point_spacing(inputs.estimate.index);

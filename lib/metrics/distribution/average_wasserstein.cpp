@@ -33,31 +33,38 @@ extern constinit const Metric average_wasserstein{
              .group = "distribution",
              .unit = "m",
              .better = "lower",
-             .definition = "Mean over voxels that both maps fill of the 2-Wasserstein distance between the Gaussians of "
-                           "their points."},
+             .definition =
+                 "Mean over voxels that both maps fill of the 2-Wasserstein distance between the Gaussians of "
+                 "their points."},
     .prepare = prepare_wasserstein,
     .sides = Sides::kEstimate,
-    .columns = [](const MetricSettings&) { return std::vector<std::string>{"n", "distance"}; },
-    .each_voxel = [](const MetricInputs& inputs, Side, const std::function<void(const VoxelTerms&)>& use) {
-      for (const VoxelDistance& voxel : inputs.wasserstein) {
-        const double terms[]{1.0, voxel.distance_m};
-        use({voxel.index, inputs.options().awd_voxel_m, terms});
-      }
-    },
-    .value = [](const PairSums& sums, const MetricSettings& settings) {
-      Record record{.value = sums.estimate[1] / sums.estimate[0],
-                    .parameters = wasserstein_parameters(settings.options)};
-      return record.add("n_voxels", static_cast<std::uint64_t>(sums.estimate[0]));
-    },
-    .finish = [](Record& record, const MetricInputs& inputs, std::span<const double>, std::vector<Warning>& warnings) {
-      const MetricOptions& o = inputs.options();
-      if (inputs.wasserstein.empty()) {
-        warnings.push_back({"average_wasserstein_no_voxels",
-                            fmt::format("no {} m voxel holds {} points of both maps: no AWD and no SCS", o.awd_voxel_m,
-                                        o.awd_min_points)});
-      }
-      add_distribution(record, inputs.wasserstein);
-    }};
+    .columns =
+        [](const MetricSettings&) {
+          return std::vector<std::string>{"n", "distance"};
+        },
+    .each_voxel =
+        [](const MetricInputs& inputs, Side, const std::function<void(const VoxelTerms&)>& use) {
+          for (const VoxelDistance& voxel : inputs.wasserstein) {
+            const double terms[]{1.0, voxel.distance_m};
+            use({voxel.index, inputs.options().awd_voxel_m, terms});
+          }
+        },
+    .value =
+        [](const PairSums& sums, const MetricSettings& settings) {
+          Record record{.value = sums.estimate[1] / sums.estimate[0],
+                        .parameters = wasserstein_parameters(settings.options)};
+          return record.add("n_voxels", static_cast<std::uint64_t>(sums.estimate[0]));
+        },
+    .finish =
+        [](Record& record, const MetricInputs& inputs, std::span<const double>, std::vector<Warning>& warnings) {
+          const MetricOptions& o = inputs.options();
+          if (inputs.wasserstein.empty()) {
+            warnings.push_back({"average_wasserstein_no_voxels",
+                                fmt::format("no {} m voxel holds {} points of both maps: no AWD and no SCS",
+                                            o.awd_voxel_m, o.awd_min_points)});
+          }
+          add_distribution(record, inputs.wasserstein);
+        }};
 
 }  // namespace catalog
 }  // namespace cmap

@@ -16,27 +16,33 @@ extern constinit const Metric spatial_consistency{
                            "neighboring voxels, averaged."},
     .prepare = prepare_wasserstein,
     .sides = Sides::kEstimate,
-    .columns = [](const MetricSettings&) { return std::vector<std::string>{"n", "variation"}; },
-    .each_voxel = [](const MetricInputs& inputs, Side, const std::function<void(const VoxelTerms&)>& use) {
-      const MetricOptions& o = inputs.options();
-      const std::vector<double> variations =
-          local_variations(inputs.wasserstein, static_cast<int>(o.scs_radius_voxels));
-      for (std::size_t i = 0; i < variations.size(); ++i) {
-        if (std::isnan(variations[i])) continue;
-        const double terms[]{1.0, variations[i]};
-        use({inputs.wasserstein[i].index, o.awd_voxel_m, terms});
-      }
-    },
-    .value = [](const PairSums& sums, const MetricSettings& settings) {
-      Record record{.value = sums.estimate[1] / sums.estimate[0],
-                    .parameters = wasserstein_parameters(settings.options)};
-      record.parameters.push_back({"radius_voxels", settings.options.scs_radius_voxels});
-      return record.add("n_voxels", static_cast<std::uint64_t>(sums.estimate[0]));
-    },
-    .finish = [](Record& record, const MetricInputs& inputs, std::span<const double>, std::vector<Warning>& warnings) {
-      if (!std::isnan(*record.value) || inputs.wasserstein.empty()) return;
-      warnings.push_back({"spatial_consistency_no_voxels",
-                          "no voxel has other voxels at a Wasserstein distance above 0 around it: no SCS"});
-    }};
+    .columns =
+        [](const MetricSettings&) {
+          return std::vector<std::string>{"n", "variation"};
+        },
+    .each_voxel =
+        [](const MetricInputs& inputs, Side, const std::function<void(const VoxelTerms&)>& use) {
+          const MetricOptions& o = inputs.options();
+          const std::vector<double> variations =
+              local_variations(inputs.wasserstein, static_cast<int>(o.scs_radius_voxels));
+          for (std::size_t i = 0; i < variations.size(); ++i) {
+            if (std::isnan(variations[i])) continue;
+            const double terms[]{1.0, variations[i]};
+            use({inputs.wasserstein[i].index, o.awd_voxel_m, terms});
+          }
+        },
+    .value =
+        [](const PairSums& sums, const MetricSettings& settings) {
+          Record record{.value = sums.estimate[1] / sums.estimate[0],
+                        .parameters = wasserstein_parameters(settings.options)};
+          record.parameters.push_back({"radius_voxels", settings.options.scs_radius_voxels});
+          return record.add("n_voxels", static_cast<std::uint64_t>(sums.estimate[0]));
+        },
+    .finish =
+        [](Record& record, const MetricInputs& inputs, std::span<const double>, std::vector<Warning>& warnings) {
+          if (!std::isnan(*record.value) || inputs.wasserstein.empty()) return;
+          warnings.push_back({"spatial_consistency_no_voxels",
+                              "no voxel has other voxels at a Wasserstein distance above 0 around it: no SCS"});
+        }};
 
 }  // namespace cmap::catalog

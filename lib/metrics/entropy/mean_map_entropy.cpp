@@ -55,39 +55,47 @@ extern constinit const Metric mean_map_entropy{
              .definition = "Mean entropy of the Gaussian of every point's neighborhood, where that is not flat to the "
                            "rounding of its coordinates: lower is crisper. Needs no reference.",
              .needs_reference = false},
-    .prepare = [](MetricInputs& inputs) {
-      if (inputs.neighborhoods.estimate) return;
-      for (const Side side : inputs.sides()) {
-        const IndexedMap& map = inputs.map(side);
-        inputs.neighborhoods.of(side) = neighborhood_shapes(map.index, inputs.options().mme_radius_m, map.file_step_m);
-      }
-    },
-    .columns = [](const MetricSettings&) { return std::vector<std::string>{"entropy", "n", "left_out", "flat"}; },
-    .add = [](const PointRun& run, std::span<ExactSum> sums) {
-      const NeighborhoodShape& shape = *run.inputs.neighborhoods.of(run.side);
-      for (std::size_t slot = run.begin; slot < run.begin + run.size; ++slot) {
-        if (!has_enough(shape, slot, run.inputs.options().mme_min_neighbors)) {
-          sums[kLeftOut].add(1.0);
-        } else if (shape.is_flat[slot] != 0) {
-          sums[kFlat].add(1.0);
-        } else {
-          sums[kEntropy].add(entropy_of(shape.covariance_det[slot]));
-          sums[kEntropies].add(1.0);
-        }
-      }
-    },
-    .value = [](const PairSums& sums, const MetricSettings& settings) {
-      Record record = entropy_record(sums.estimate);
-      record.parameters = {{"radius_m", settings.options.mme_radius_m},
-                           {"min_neighbors", settings.options.mme_min_neighbors}};
-      if (!sums.reference.empty()) record.add("reference", entropy_record(sums.reference));
-      return record;
-    },
-    .finish = [](Record& record, const MetricInputs& inputs, std::span<const double>, std::vector<Warning>& warnings) {
-      if (std::isnan(*record.value)) {
-        warnings.push_back(why_no_entropy(inputs.options(), *record.number("n_flat")));
-      }
-    }};
+    .prepare =
+        [](MetricInputs& inputs) {
+          if (inputs.neighborhoods.estimate) return;
+          for (const Side side : inputs.sides()) {
+            const IndexedMap& map = inputs.map(side);
+            inputs.neighborhoods.of(side) =
+                neighborhood_shapes(map.index, inputs.options().mme_radius_m, map.file_step_m);
+          }
+        },
+    .columns =
+        [](const MetricSettings&) {
+          return std::vector<std::string>{"entropy", "n", "left_out", "flat"};
+        },
+    .add =
+        [](const PointRun& run, std::span<ExactSum> sums) {
+          const NeighborhoodShape& shape = *run.inputs.neighborhoods.of(run.side);
+          for (std::size_t slot = run.begin; slot < run.begin + run.size; ++slot) {
+            if (!has_enough(shape, slot, run.inputs.options().mme_min_neighbors)) {
+              sums[kLeftOut].add(1.0);
+            } else if (shape.is_flat[slot] != 0) {
+              sums[kFlat].add(1.0);
+            } else {
+              sums[kEntropy].add(entropy_of(shape.covariance_det[slot]));
+              sums[kEntropies].add(1.0);
+            }
+          }
+        },
+    .value =
+        [](const PairSums& sums, const MetricSettings& settings) {
+          Record record = entropy_record(sums.estimate);
+          record.parameters = {{"radius_m", settings.options.mme_radius_m},
+                               {"min_neighbors", settings.options.mme_min_neighbors}};
+          if (!sums.reference.empty()) record.add("reference", entropy_record(sums.reference));
+          return record;
+        },
+    .finish =
+        [](Record& record, const MetricInputs& inputs, std::span<const double>, std::vector<Warning>& warnings) {
+          if (std::isnan(*record.value)) {
+            warnings.push_back(why_no_entropy(inputs.options(), *record.number("n_flat")));
+          }
+        }};
 
 }  // namespace catalog
 }  // namespace cmap

@@ -29,8 +29,8 @@ double share_within(std::span<const double> counts, const MetricSettings& settin
 Record shares_record(std::span<const double> counts, const MetricSettings& settings) {
   std::vector<Record> levels;
   for (const double threshold_m : settings.options.thresholds_m) {
-    Record& level = levels.emplace_back(
-        Record{.threshold_m = threshold_m, .value = share_within(counts, settings, threshold_m)});
+    Record& level =
+        levels.emplace_back(Record{.threshold_m = threshold_m, .value = share_within(counts, settings, threshold_m)});
     level.add("n", static_cast<std::uint64_t>(sum_within(counts, settings, threshold_m)));
   }
   Record record;

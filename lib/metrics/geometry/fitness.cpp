@@ -13,13 +13,13 @@ extern constinit const Metric fitness{
              .per_threshold = true,
              .share = true},
     .columns = [](const MetricSettings& settings) { return band_columns(settings, "n"); },
-    .add = [](const PointRun& run, std::span<ExactSum> sums) {
-      for (std::size_t band = 0; band < sums.size(); ++band) {
-        sums[band].add(static_cast<double>(run.distances_in(band).size()));
-      }
-    },
-    .value = [](const PairSums& sums, const MetricSettings& settings) {
-      return shares_record(sums.estimate, settings);
-    }};
+    .add =
+        [](const PointRun& run, std::span<ExactSum> sums) {
+          for (std::size_t band = 0; band < sums.size(); ++band) {
+            sums[band].add(static_cast<double>(run.distances_in(band).size()));
+          }
+        },
+    .value = [](const PairSums& sums,
+                const MetricSettings& settings) { return shares_record(sums.estimate, settings); }};
 
 }  // namespace cmap::catalog
