@@ -29,7 +29,22 @@ endfunction()
 # The same for a module that is installed for others to use.
 function(cmap_add_module name)
   cmap_add_library(${name} ${ARGN})
-  install(TARGETS cmap_lib_${name} EXPORT cmapTargets)
+  install(TARGETS cmap_lib_${name} EXPORT cmapTargets COMPONENT development)
+  set_property(GLOBAL APPEND PROPERTY CMAP_MODULES ${name})
+endfunction()
+
+# cmap_list_objects(PREFIX type namespace name ...) sets <PREFIX>_DECLARATIONS and <PREFIX>_POINTERS, the text of C++ that
+# declares objects of one type in namespace cmap::<namespace> and lists their addresses. A list in CMake decides what there is:
+# objects of a static library that registered themselves would be left out by the linker.
+function(cmap_list_objects prefix type namespace)
+  set(declarations "")
+  set(pointers "")
+  foreach(name IN LISTS ARGN)
+    string(APPEND declarations "extern const ${type} ${name};\n")
+    string(APPEND pointers "      &${namespace}::${name},\n")
+  endforeach()
+  set(${prefix}_DECLARATIONS "${declarations}" PARENT_SCOPE)
+  set(${prefix}_POINTERS "${pointers}" PARENT_SCOPE)
 endfunction()
 
 # cmap_add_tests(module name ...) adds each <name>_test.cpp of this folder to the program tests_<module>, one link for all of
@@ -37,10 +52,10 @@ endfunction()
 function(cmap_add_tests module)
   set(target tests_${module})
   if(NOT TARGET ${target})
-    add_executable(${target} ${PROJECT_SOURCE_DIR}/tests/test_main.cpp)
+    add_executable(${target})
     cmap_set_compile_options(${target})
     target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests ${PROJECT_SOURCE_DIR}/lib)
-    target_link_libraries(${target} PRIVATE cmap::${module} GTest::gtest)
+    target_link_libraries(${target} PRIVATE cmap::${module} cmap_test_main)
     # Test files name their helpers as they like.
     set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)
   endif()

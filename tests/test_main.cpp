@@ -10,7 +10,8 @@ namespace {
 
 /// A filter for the tests that stand in the file; empty if there are none.
 std::string tests_of_file(std::string_view name) {
-  const std::string ending = "/" + std::string(name) + "_test.cpp";
+  std::string ending(1, '/');
+  ending.append(name).append("_test.cpp");
   std::string filter;
   const testing::UnitTest& all = *testing::UnitTest::GetInstance();
   for (int s = 0; s < all.total_test_suite_count(); ++s) {
@@ -18,7 +19,8 @@ std::string tests_of_file(std::string_view name) {
     for (int t = 0; t < suite.total_test_count(); ++t) {
       const testing::TestInfo& test = *suite.GetTestInfo(t);
       if (!std::string_view(test.file()).ends_with(ending)) continue;
-      filter += std::string(filter.empty() ? "" : ":") + suite.name() + "." + test.name();
+      if (!filter.empty()) filter += ':';
+      filter.append(suite.name()).append(1, '.').append(test.name());
     }
   }
   return filter;

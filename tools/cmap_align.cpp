@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "cmap/align/align.hpp"
@@ -37,13 +38,20 @@ struct Arguments {
   std::vector<std::string> outputs() const { return {output, json, cloud}; }
 };
 
+/// The registration methods, and what else aligns.
+std::vector<std::string> method_names() {
+  std::vector<std::string> names = cmap::registration_names();
+  for (const char* other : {"tanksandtemples", "trajectory"}) names.emplace_back(other);
+  return names;
+}
+
 void add_options(CLI::App& app, Arguments& a) {
   const auto positive = CLI::Range(1e-9, 1e9).description("");
   app.add_option("SRC", a.source, "map or trajectory to move")->required()->type_name("FILE");
   app.add_option("DST", a.target, "map or trajectory that stays")->required()->type_name("FILE");
   app.add_option("--method", a.method, "icp, plane, gicp, sim3, global, tanksandtemples, trajectory [gicp]")
       ->type_name("NAME")
-      ->check(cmap::one_of({"icp", "plane", "gicp", "sim3", "global", "tanksandtemples", "trajectory"}));
+      ->check(cmap::one_of(method_names()));
   app.add_option("-o,--output", a.output, "transform to write: 4x4 as text")->type_name("FILE");
   app.add_option("--output-cloud", a.cloud, "SRC as moved onto DST, to write")->type_name("FILE.ply");
   app.add_option("--json", a.json, "everything about the result, to write")->type_name("FILE");
@@ -72,26 +80,27 @@ void add_options(CLI::App& app, Arguments& a) {
   cmap::refuse_empty(app, {"--output", "--output-cloud", "--json", "--initial", "--times"});
 }
 
+/// Whether an option means something for the method; of those that no method of registration is, by name.
+bool is_used(std::string_view option, const std::string& method) {
+  const bool registers = std::ranges::count(cmap::registration_names(), method) > 0;
+  const bool of_tanks = method == "tanksandtemples", of_trajectories = method == "trajectory";
+  if (option == "--tau") return of_tanks;
+  if (option == "--fit" || option == "--max-gap" || option == "--times") return of_trajectories;
+  if (option == "--output-cloud" || option == "--keep-noise" || option == "--classes") return !of_trajectories;
+  if (!registers) return option == "--initial" && of_tanks;
+  const cmap::RegistrationMethod& how = cmap::registration_method(method);
+  if (option == "--initial") return how.needs_initial;
+  if (option == "--max-distance") return how.takes_max_distance;
+  if (option == "--scale") return how.scale == cmap::ScaleRule::kOnRequest;
+  return true;
+}
+
 /// Options that the method would ignore are refused: they do not do what their giver thinks.
 void refuse_unused(const CLI::App& app, const std::string& method) {
-  const auto refuse = [&](const char* option, std::initializer_list<const char*> methods) {
-    for (const char* m : methods) {
-      if (method == m) return;
-    }
-    if (app.get_option(option)->count() > 0) {
-      throw cmap::UsageError(fmt::format("{} has no meaning for --method {}", option, method));
-    }
-  };
-  refuse("--initial", {"icp", "plane", "gicp", "sim3", "tanksandtemples"});
-  refuse("--voxel", {"icp", "plane", "gicp", "sim3", "global"});
-  refuse("--max-distance", {"icp", "plane", "gicp", "sim3"});
-  refuse("--scale", {"icp", "plane", "gicp", "global"});
-  refuse("--tau", {"tanksandtemples"});
-  refuse("--fit", {"trajectory"});
-  refuse("--max-gap", {"trajectory"});
-  refuse("--times", {"trajectory"});
-  for (const char* of_maps : {"--output-cloud", "--keep-noise", "--classes"}) {
-    refuse(of_maps, {"icp", "plane", "gicp", "sim3", "global", "tanksandtemples"});
+  for (const char* option : {"--initial", "--voxel", "--max-distance", "--scale", "--tau", "--fit", "--max-gap",
+                             "--times", "--output-cloud", "--keep-noise", "--classes"}) {
+    if (app.get_option(option)->count() == 0 || is_used(option, method)) continue;
+    throw cmap::UsageError(fmt::format("{} has no meaning for --method {}", option, method));
   }
 }
 
@@ -154,7 +163,7 @@ Result align_maps(const Arguments& a) {
   if (a.method == "tanksandtemples") {
     result = run_tanks_and_temples(a, source.cloud, target.cloud, options.T_initial, warnings);
   } else {
-    result.alignment = cmap::align(source.cloud, target.cloud, cmap::align_method_from_name(a.method), options);
+    result.alignment = cmap::align(source.cloud, target.cloud, cmap::registration_method(a.method), options);
     add_warnings(warnings, result.alignment);
     result.json = cmap::alignment_json(result.alignment);
   }

@@ -16,7 +16,7 @@ packages=(
 for argument in "$@"; do
   case "$argument" in
     --all)
-      packages+=(libvtk9-dev libopencv-imgproc-dev libopencv-imgcodecs-dev fonts-dejavu-core
+      packages+=(libvtk9-dev libopencv-imgproc-dev libopencv-imgcodecs-dev fonts-dejavu-core help2man
         libegl-dev libgl-dev libx11-dev libpcl-dev libembree-dev libceres-dev)
       ;;
     --tests)

@@ -1,16 +1,14 @@
 #include "cmap/align/align.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "cmap/align/global.hpp"
 #include "cmap/align/icp.hpp"
-#include "cmap/align/sim3_icp.hpp"
 #include "cmap/core/error.hpp"
 #include "cmap/io/transform_file.hpp"
 #include "cmap/spatial/k_nearest.hpp"
@@ -18,9 +16,7 @@
 namespace cmap {
 namespace {
 
-constexpr std::array<std::string_view, 5> kNames{"icp", "plane", "gicp", "sim3", "global"};
 constexpr double kVoxelsPerSize = 400.0;
-constexpr double kGateVoxels = 10.0;
 
 /// From the 0.5 to the 99.5 % quantile of an axis: strays do not count.
 double extent_m(const PointCloud& cloud, int axis) {
@@ -46,33 +42,6 @@ double median_spacing_m(const PointCloud& cloud) {
   const auto middle = spacing_m.begin() + static_cast<std::ptrdiff_t>(spacing_m.size() / 2);
   std::nth_element(spacing_m.begin(), middle, spacing_m.end());
   return *middle;
-}
-
-/// On surfaces, point-to-point matches slide by a fraction of the points' spacing an iteration; planes settle at once.
-Alignment settle_on_surfaces(const PointCloud& source, const PointCloud& target, const Sim3Alignment& found) {
-  IcpOptions planes;
-  planes.with_scale = true;
-  planes.levels = {{found.voxel_m, found.max_distance_m, 50}};
-  Alignment result = icp(source, target, found.T_dst_src, planes);
-  result.method = found.method;
-  result.iterations += found.iterations;
-  result.warnings.insert(result.warnings.end(), found.warnings.begin(), found.warnings.end());
-  return result;
-}
-
-Alignment align_sim3(const PointCloud& source, const PointCloud& target, const AlignOptions& options, double voxel_m) {
-  Sim3IcpOptions sim3 = Sim3IcpOptions::robust(voxel_m);
-  if (options.max_distance_m) {
-    sim3.gate0_m = *options.max_distance_m;
-    sim3.gate1_m = std::min(sim3.gate1_m, sim3.gate0_m);
-  }
-  const Sim3Alignment result = sim3_icp(source, target, options.T_initial, sim3);
-  if (!result.accepted) {
-    // Whoever asks for an alignment has no use for the start.
-    const std::string& why = result.warnings.back();
-    throw UnsupportedError(why.substr(why.find(": ") + 2));
-  }
-  return settle_on_surfaces(source, target, result);
 }
 
 /// Every k-th point, at most about `most`.
@@ -104,30 +73,19 @@ void settle_on_common_points(const PointCloud& source, const PointCloud& target,
   }
 }
 
-Alignment align_by(const PointCloud& source, const PointCloud& target, AlignMethod method, const AlignOptions& options,
-                   double voxel_m) {
-  if (method == AlignMethod::kSim3) return align_sim3(source, target, options, voxel_m);
-  if (method == AlignMethod::kGlobal) {
-    GlobalOptions global;
-    global.with_scale = options.with_scale;
-    global.fine_voxel_m = voxel_m;
-    return global_registration(source, target, global);
-  }
-  IcpOptions icp_options;
-  icp_options.metric = static_cast<IcpMetric>(method);
-  icp_options.with_scale = options.with_scale;
-  icp_options.levels = coarse_to_fine(voxel_m, options.max_distance_m.value_or(kGateVoxels * voxel_m), 100);
-  return icp(source, target, options.T_initial, icp_options);
-}
-
 }  // namespace
 
-AlignMethod align_method_from_name(std::string_view name) {
-  const auto found = std::find(kNames.begin(), kNames.end(), name);
-  if (found == kNames.end()) {
-    throw UsageError(fmt::format("method \"{}\" is none of icp, plane, gicp, sim3, global", name));
+std::vector<std::string> registration_names() {
+  std::vector<std::string> names;
+  for (const RegistrationMethod* method : registration_methods()) names.emplace_back(method->name);
+  return names;
+}
+
+const RegistrationMethod& registration_method(std::string_view name) {
+  for (const RegistrationMethod* method : registration_methods()) {
+    if (method->name == name) return *method;
   }
-  return static_cast<AlignMethod>(found - kNames.begin());
+  throw UsageError(fmt::format("method \"{}\" is none of {}", name, fmt::join(registration_names(), ", ")));
 }
 
 double default_align_voxel_m(const PointCloud& target) {
@@ -137,7 +95,8 @@ double default_align_voxel_m(const PointCloud& target) {
   return std::max(size_m / kVoxelsPerSize, 2.0 * median_spacing_m(target));
 }
 
-Alignment align(const PointCloud& source, const PointCloud& target, AlignMethod method, const AlignOptions& options) {
+Alignment align(const PointCloud& source, const PointCloud& target, const RegistrationMethod& method,
+                const AlignOptions& options) {
   if (source.positions.empty() || target.positions.empty()) {
     throw std::invalid_argument("a registration needs points");
   }
@@ -145,9 +104,9 @@ Alignment align(const PointCloud& source, const PointCloud& target, AlignMethod 
   if (!(voxel_m > 0.0) || !std::isfinite(voxel_m)) {
     throw UsageError(fmt::format("voxel_m is {:g}: above 0 is needed", voxel_m));
   }
-  Alignment found = align_by(source, target, method, options, voxel_m);
+  Alignment found = method.run(source, target, options, voxel_m);
   if (found.voxel_m > 0.0) {
-    settle_on_common_points(source, target, options.with_scale || method == AlignMethod::kSim3, found);
+    settle_on_common_points(source, target, options.with_scale || method.scale == ScaleRule::kAlways, found);
   }
   return found;
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cmap/align/align.hpp"
 #include "cmap/core/error.hpp"
 #include "cmap/core/spelling.hpp"
 #include "cmap/eval/metric_catalog.hpp"
@@ -132,8 +133,15 @@ const char* observed_name(Observed observed) {
   return observed == Observed::kAuto ? "auto" : observed == Observed::kSensor ? "sensor" : "none";
 }
 
-std::string one_of(const char* name, const Json& value, std::initializer_list<const char*> words) {
-  const std::vector<std::string> known(words.begin(), words.end());
+/// The registration methods, and what else moves the estimate.
+std::vector<std::string> align_names() {
+  std::vector<std::string> names = registration_names();
+  names.insert(names.begin(), "none");
+  for (const char* other : {"trajectory", "tanksandtemples"}) names.emplace_back(other);
+  return names;
+}
+
+std::string one_of(const char* name, const Json& value, const std::vector<std::string>& known) {
   for (const std::string& word : known) {
     if (value == word) return word;
   }
@@ -291,8 +299,7 @@ const std::vector<OptionSpec>& evaluation_option_specs() {
                   visibility.voxel_m, positive(n, value), o.visibility.voxel_m),
       CMAP_OPTION("align", kWord, "METHOD",
                   "move the estimate first: none, icp, plane, gicp, sim3, global, trajectory, tanksandtemples", align,
-                  one_of(n, value, {"none", "icp", "plane", "gicp", "sim3", "global", "trajectory", "tanksandtemples"}),
-                  o.align),
+                  one_of(n, value, align_names()), o.align),
       CMAP_OPTION("align-voxel", kNumber, "METERS", "thinning for the alignment; by default from the reference's size",
                   align_voxel_m, positive_or_unset(n, value), optional_number(o.align_voxel_m)),
       CMAP_OPTION("align-distance", kNumber, "METERS", "farther pairs are no matches; by default 10 voxels",

@@ -36,7 +36,7 @@ Alignment align_estimate(const PointCloud& reference, const PointCloud& estimate
   how.voxel_m = options.align_voxel_m;
   how.max_distance_m = options.align_distance_m;
   how.with_scale = options.align_scale;
-  return align(estimate, reference, align_method_from_name(options.align), how);
+  return align(estimate, reference, registration_method(options.align), how);
 }
 
 /// Low values say that the scores may measure the alignment more than the map.

@@ -52,13 +52,13 @@ Record& Record::add(std::string name, std::vector<Record> list) {
   return *this;
 }
 
-const std::vector<Record>& Record::list(std::string_view name) const {
+const std::vector<Record>& Record::list(std::string_view name) const& {
   static const std::vector<Record> kNone;
   const auto found = std::ranges::find(rows, name, &RecordRows::name);
   return found == rows.end() ? kNone : found->rows;
 }
 
-std::vector<Record>& Record::list(std::string_view name) {
+std::vector<Record>& Record::list(std::string_view name) & {
   const auto found = std::ranges::find(rows, name, &RecordRows::name);
   return found == rows.end() ? rows.emplace_back(RecordRows{std::string(name), {}}).rows : found->rows;
 }

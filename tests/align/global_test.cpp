@@ -169,7 +169,7 @@ TEST(Global, RealLidarPairFromRandomPoses) {
   int recovered = 0;
   for (int trial = 0; trial < n; ++trial) {
     const Similarity A = test::random_similarity(random, 1.0, 1.0, 100.0);
-    const Alignment found = align(transformed(pair.source, A.matrix()), pair.target, AlignMethod::kGlobal);
+    const Alignment found = align(transformed(pair.source, A.matrix()), pair.target, registration_method("global"));
     const Similarity T = similarity_from(found.T_dst_src) * A;
     recovered += (T.translation - truth.translation).norm() < 0.02 && test::angle_between_deg(T, truth) < 0.2;
   }
@@ -190,7 +190,7 @@ TEST(Global, RealAerialMapWithUnknownScale) {
   for (int trial = 0; trial < n; ++trial) {
     const Similarity A = test::random_similarity(random, 0.7, 1.4, 500.0);
     const PointCloud moved = transformed(map, A.matrix());
-    const Similarity T = similarity_from(align(moved, map, AlignMethod::kGlobal, options).T_dst_src);
+    const Similarity T = similarity_from(align(moved, map, registration_method("global"), options).T_dst_src);
     recovered += test::displacement_m(T, A.inverse(), moved) < 0.05 && std::abs(T.scale * A.scale - 1.0) < 1e-3;
   }
   EXPECT_GE(recovered, n * 98 / 100) << "of " << n;

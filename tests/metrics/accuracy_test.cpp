@@ -49,8 +49,8 @@ void expect_equals_definition(const Record& found, const Array<double>& sq_dist)
   }
   const auto n = static_cast<long double>(distances.size());
   ASSERT_EQ(number(found, "n"), static_cast<double>(distances.size()));
-  EXPECT_DOUBLE_EQ(number(found, "mean"), static_cast<double>(sum / n));
-  EXPECT_DOUBLE_EQ(*found.value, static_cast<double>(std::sqrt(sum_sq / n)));
+  EXPECT_NEAR_RELATIVE(number(found, "mean"), static_cast<double>(sum / n), test::kLongDoubleSum);
+  EXPECT_NEAR_RELATIVE(*found.value, static_cast<double>(std::sqrt(sum_sq / n)), test::kLongDoubleSum);
   std::sort(distances.begin(), distances.end());
   const std::size_t half = distances.size() / 2;
   const double median = distances.size() % 2 == 1 ? distances[half] : 0.5 * (distances[half - 1] + distances[half]);

@@ -57,8 +57,10 @@ TEST(Chamfer, EqualsTheDefinitionOverManyChunks) {
     truncated += std::min(std::sqrt(sq), 0.3);
   }
   const Record found = measured(catalog::chamfer, test::pair_with(sq_dist), test::with_thresholds({0.1}, 0.3));
-  EXPECT_DOUBLE_EQ(number(found, "estimate_to_reference"), static_cast<double>(sum / 300001.0L));
-  EXPECT_DOUBLE_EQ(number(found, "variants.truncated_l1_sum"), 2.0 * static_cast<double>(truncated / 300001.0L));
+  EXPECT_NEAR_RELATIVE(number(found, "estimate_to_reference"), static_cast<double>(sum / 300001.0L),
+                       test::kLongDoubleSum);
+  EXPECT_NEAR_RELATIVE(number(found, "variants.truncated_l1_sum"), 2.0 * static_cast<double>(truncated / 300001.0L),
+                       test::kLongDoubleSum);
 }
 
 TEST(Chamfer, OfAMapAndItselfIsZero) {

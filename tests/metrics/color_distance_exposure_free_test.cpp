@@ -50,8 +50,8 @@ TEST(ExposureGains, NeedColorsInBothMaps) {
 TEST(ColorDistanceExposureFree, HandComputed) {
   test::Clouds clouds{test::cloud_of({{0, 0, 0}, {5, 0, 0}, {9, 0, 0}}),
                       test::cloud_of({{0, 0, 0}, {5, 0, 0}, {9, 0, 0}})};
-  clouds.reference.colors = Array<RgbF>{{0.5f, 0, 0}, {0.5f, 0, 0}, {1, 0, 0}};
-  clouds.estimate.colors = Array<RgbF>{{0.25f, 0, 0}, {0.25f, 0, 0}, {0.25f, 0, 0}};
+  clouds.reference.colors = Array<RgbF>{{0.5f, 0.5f, 0.5f}, {0.5f, 0.5f, 0.5f}, {1, 0.5f, 0.5f}};
+  clouds.estimate.colors = Array<RgbF>(3, RgbF{0.25f, 0.5f, 0.5f});
   const Record found = test::measured(catalog::color_distance_exposure_free, clouds);
   // Gains 2, 2, 4: the median brings two pairs together and leaves 1 - 0.5 of the third.
   EXPECT_DOUBLE_EQ(*found.value, 0.5 / 3.0);

@@ -55,6 +55,9 @@ inline Array<double> random_squares(std::size_t n, unsigned seed) {
   return sq_dist;
 }
 
+/// What a sum of 300,001 long doubles may be off by.
+inline constexpr double kLongDoubleSum = 300'001 * 0x1p-64;
+
 inline MetricOptions with_thresholds(std::vector<double> thresholds_m, double overlap_distance_m = 1.0) {
   MetricOptions options;
   options.thresholds_m = std::move(thresholds_m);

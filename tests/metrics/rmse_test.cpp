@@ -27,8 +27,8 @@ TEST(Rmse, EqualsTheDefinitionOverManyChunks) {
   const Array<double> sq_dist = test::random_squares(300001, 5);
   long double sum = 0.0L;
   for (const double sq : sq_dist) sum += sq;
-  EXPECT_DOUBLE_EQ(*measured(catalog::rmse, test::pair_with(sq_dist)).value,
-                   static_cast<double>(std::sqrt(sum / 300001.0L)));
+  EXPECT_NEAR_RELATIVE(*measured(catalog::rmse, test::pair_with(sq_dist)).value,
+                       static_cast<double>(std::sqrt(sum / 300001.0L)), test::kLongDoubleSum);
 }
 
 }  // namespace

@@ -2,41 +2,54 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "cmap/align/alignment.hpp"
 #include "cmap/core/point_cloud.hpp"
 
 namespace cmap {
 
-enum class AlignMethod {
-  kIcp,     ///< SE(3), point to point
-  kPlane,   ///< SE(3), point to plane
-  kGicp,    ///< SE(3), plane to plane
-  kSim3,    ///< Sim(3), the paper's regularized ICP (sim3_icp.hpp), settled by GICP with scale
-  kGlobal,  ///< from no guess, SE(3) or Sim(3): global.hpp
-};
-
-/// "icp", "plane", "gicp", "sim3", "global"; throws UsageError for others, naming them.
-AlignMethod align_method_from_name(std::string_view name);
-
 struct AlignOptions {
-  Eigen::Matrix4d T_initial = Eigen::Matrix4d::Identity();  ///< dst from src; not used by kGlobal
+  Eigen::Matrix4d T_initial = Eigen::Matrix4d::Identity();  ///< dst from src; not used by methods that need none
   /// Of the thinned source, in the target's units, at the finest level; without one the target's size / 400, but at
   /// least twice its points' median spacing. Finer: more accurate and slower.
   std::optional<double> voxel_m;
   /// Farther pairs are no matches at the finest level; without one 10 voxels. It must exceed what the initial transform
-  /// is wrong by divided by 4 (levels begin 4 times as coarse), for kSim3 (where it is the first gate) that itself.
+  /// is wrong by divided by 4 (levels begin 4 times as coarse), for sim3 (where it is the first gate) that itself.
   std::optional<double> max_distance_m;
-  bool with_scale = false;  ///< kGlobal, kIcp, kPlane, kGicp: estimate the scale too; kSim3 always does
+  bool with_scale = false;  ///< estimate the scale too, where the method leaves the choice
 };
 
-/// Aligns a source map to a target map: one door to icp.hpp, sim3_icp.hpp and global.hpp. Units are meters; the clouds
+/// Whether a method estimates the scale.
+enum class ScaleRule { kOnRequest, kAlways };
+
+/// A way to register one map onto another: a source of its name in lib/align/methods/, and that name in the module's
+/// CMakeLists.txt. Command lines, configuration files and --help follow.
+struct RegistrationMethod {
+  std::string_view name;
+  std::string_view summary;        ///< for people: "point to plane"
+  bool needs_initial = true;       ///< it starts from T_initial, near enough; else from nothing
+  bool takes_max_distance = true;  ///< AlignOptions::max_distance_m
+  ScaleRule scale = ScaleRule::kOnRequest;
+  Alignment (*run)(const PointCloud& source, const PointCloud& target, const AlignOptions& options, double voxel_m);
+};
+
+/// All of them, in the order of --help.
+std::span<const RegistrationMethod* const> registration_methods();
+std::vector<std::string> registration_names();
+
+/// By name; throws UsageError for others, naming them.
+const RegistrationMethod& registration_method(std::string_view name);
+
+/// Aligns a source map to a target map: one door to all methods. Units are meters; the clouds
 /// may lie anywhere. Thread-safe; bitwise the same for any number of threads. Throws UnsupportedError where the
 /// alignment cannot be determined (no overlap; a plane, line, sphere or corridor, saying which direction is free;
-/// T_initial no similarity) and for kGlobal in a build without PCL, UsageError for wrong options,
+/// T_initial no similarity) and for `global` in a build without PCL, UsageError for wrong options,
 /// std::invalid_argument on an empty cloud.
-Alignment align(const PointCloud& source, const PointCloud& target, AlignMethod method,
+Alignment align(const PointCloud& source, const PointCloud& target, const RegistrationMethod& method,
                 const AlignOptions& options = {});
 
 /// The voxel that align() takes where none is given.

@@ -22,6 +22,8 @@ enum class Observed { kNone, kAuto, kSensor };
 /// Everything that can change a number of an evaluation. The defaults are those of METRICS: the paper's where it gives
 /// any. Command line, configuration files and reports name the fields as evaluation_option_specs() does.
 struct EvaluationOptions : MetricOptions {
+  EvaluationOptions() = default;  // g++ 12 takes an aggregate's `{}` for uninitialized
+
   std::vector<std::string> metrics;  ///< groups or metric ids; empty: color, geometry, distribution, as far as possible
   std::optional<double> voxel_m;     ///< thin both maps first
   std::optional<Box3d> crop;         ///< reference frame

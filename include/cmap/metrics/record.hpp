@@ -37,8 +37,9 @@ struct Record {
   Record& add(std::string name, std::vector<Record> list);
 
   /// The list of that name, empty if there is none.
-  const std::vector<Record>& list(std::string_view name) const;
-  std::vector<Record>& list(std::string_view name);
+  const std::vector<Record>& list(std::string_view name) const&;
+  std::vector<Record>& list(std::string_view name) &;
+  std::vector<Record> list(std::string_view name) && { return list(name); }  ///< of a record that does not stay
   /// The part of that name, nullptr if there is none.
   const Record* part(std::string_view name) const;
   /// The number at "value", "name", "part.name" or "list.3.name"; nullopt where there is none, NaN where it is missing.
