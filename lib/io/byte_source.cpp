@@ -86,7 +86,7 @@ void ByteSource::read(std::span<std::byte> out, std::string_view what) {
 }
 
 std::size_t ByteSource::read_at(std::uint64_t offset, std::span<std::byte> out) const {
-  if (offset >= size_) return 0;
+  if (offset >= size_ || out.empty()) return 0;  // memcpy takes no null pointer, whatever the size
   out = out.first(std::min<std::uint64_t>(out.size(), size_ - offset));
   if (!memory_.empty()) {
     std::memcpy(out.data(), memory_.data() + offset, out.size());
