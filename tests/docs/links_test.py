@@ -51,7 +51,8 @@ def warning_ids():
     """What the library calls its warnings: where they are added, and where a function makes one."""
     text = library_text()
     added = re.findall(r'\bwarnings\.push_back\(\s*\{+\s*(?:"id",\s*)?"(?!id")([a-z_]+)"', text)
-    made = [name for body in re.findall(r"^Warning \w+\(.*?^}", text, re.S | re.M) for name in re.findall(r'return \{"([a-z_]+)"', body)]
+    makers = re.findall(r"^Warning \w+\(.*?^}", text, re.S | re.M)
+    made = [name for maker in makers for name in re.findall(r'return \{"([a-z_]+)"', maker)]
     of_tools = re.findall(r'\{"[a-z-]+", \w+_record, "([a-z_]+)"', text)
     return {*added, *made, *of_tools}
 
