@@ -1,4 +1,5 @@
-// One pair of maps, far from zero and near it, from integers, floats and doubles: DESIGN, "Large coordinates".
+// One pair of maps, far from zero and near it, from integers, floats and doubles: FORMATS, "Units and large
+// coordinates".
 
 #include <Eigen/Geometry>
 #include <cstring>
@@ -61,7 +62,7 @@ Pair with_moved_origin(Pair pair, const Eigen::Vector3d& shift_m) {
   return pair;
 }
 
-/// DESIGN, "Large coordinates".
+/// FORMATS, "Units and large coordinates".
 constexpr test::Tolerance kSamePlaceElsewhere{1e-6, 1e-12};
 
 void expect_same_scores(const Pair& pair, const Pair& other, const Json& config, const std::string& title) {

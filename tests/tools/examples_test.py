@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Every example of the README and of every program's --help runs on the samples and does what is said beside it.
+"""Every example of the README, of the pages in docs/ and of every program's --help runs on the samples and does what is
+said beside it.
 
-The examples are taken from the texts themselves. CHECKS says of each one of the README how to see that it does; an
-example that is not there fails. Long ones run on the small scene of their kind.
+The examples are taken from the texts themselves. CHECKS says of each one of the README and the pages how to see that it
+does; an example that is not there fails. Long ones run on the small scene of their kind.
 """
 
 import json
@@ -44,15 +45,29 @@ class Example:
         return set(re.findall(r"cmap_\w+(?= )", self.command)) & set(NAMES)
 
 
-def examples_of_readme():
-    blocks = re.findall(r"```sh\n(.*?)```", (SOURCE / "README.md").read_text(), re.S)
-    return [Example(line) for block in blocks for line in block.splitlines() if line.startswith("cmap_")]
+def is_example(line):
+    """The program may stand behind what it reads."""
+    return line.startswith(("cmap_", "cat ")) and bool(Example(line).programs())
+
+
+def examples_of_documents():
+    """Of the README and the pages; what stands in several of them once."""
+    examples = {}
+    for page in (*sorted(SOURCE.glob("*.md")), *sorted((SOURCE / "docs").glob("*.md"))):
+        for block in re.findall(r"^```sh\n(.*?)^```", page.read_text(), re.S | re.M):
+            for line in filter(is_example, block.splitlines()):
+                examples.setdefault(Example(line).command, Example(line))
+    return list(examples.values())
 
 
 def examples_of_help(program):
     text = subprocess.run([PROGRAMS[program], "--help"], capture_output=True, text=True, check=True).stdout
     block = re.search(r"^Examples?:\n((?:  .*\n)+)", text, re.M)
     return [Example(line.strip()) for line in block[1].splitlines()] if block else []
+
+
+def first_program(example):
+    return re.search(r"cmap_\w+(?= )", example.command)[0]
 
 
 # What can be seen of an example that did what it says: each takes the finished run.
@@ -151,6 +166,7 @@ CHECKS = {
     "cmap_eval ref.ply est.ply --sensitivity": [says("off")],
     "cmap_eval ref.ply est.ply --observed auto": [says("[Oo]bserved|seen")],
     "cmap_eval ref.ply est.ply --observed-from": [says("[Oo]bserved|seen")],
+    "cat est.ply | cmap_eval ref.ply - -o -": [says(r'^  "schema": "cmap.report/2",\n$')],
     "cmap_eval ref.ply est.ply --as": [says("color-map-evaluation", "cloudanalyzer", "mapeval", "open3d", "mpeg",
                                             "cloudcompare", "tanksandtemples")],
     "cmap_render reference.ply estimate.ply -o figure.png": [holds("figure.png")],
@@ -207,7 +223,7 @@ def check_of(command):
 
 
 class Run:
-    """A folder of its own with the files that the README names."""
+    """A folder of its own with the files that the examples name."""
 
     def __init__(self, test, example, folder, inputs):
         self.test, self.example, self.folder = test, example, folder
@@ -312,8 +328,8 @@ class Examples(unittest.TestCase):
         return folder
 
     def check_all(self, programs):
-        """The README's examples of these programs."""
-        examples = [e for e in examples_of_readme() if e.programs() and set(e.command.split()[:1]) <= programs]
+        """The documents' examples that begin with one of these programs."""
+        examples = [e for e in examples_of_documents() if first_program(e) in programs]
         self.assertGreater(len(examples), 0)
         for example in examples:
             with self.subTest(example.command):
@@ -347,9 +363,21 @@ class Examples(unittest.TestCase):
     def test_recon(self):
         self.check_all({"cmap_recon"})
 
+    def test_every_program_has_a_page(self):
+        """It shows how to call the program."""
+        for name in NAMES:
+            page = (SOURCE / f"docs/{name}.md").read_text()
+            self.assertTrue(page.startswith(f"# {name}\n"), name)
+            self.assertRegex(page, rf"(?m)^{name} ", name)
+
+    def test_every_check_is_of_an_example(self):
+        """What no document shows any more needs no check."""
+        starts = {check_of(example.command) for example in examples_of_documents()}
+        self.assertEqual(set(CHECKS) - starts, set())
+
     def test_the_manifest(self):
-        """The README's manifest, with the published numbers that it names."""
-        text = re.search(r"```json\n(.*?)```", (SOURCE / "README.md").read_text(), re.S)[1]
+        """The page's manifest, with the published numbers that it names."""
+        text = re.search(r"```json\n(.*?)```", (SOURCE / "docs/cmap_leaderboard.md").read_text(), re.S)[1]
         folder = self.work_folder()
         (folder / "board.json").write_text(text)
         shutil.copy(SOURCE / "benchmarks/leaderboard/paper.json", folder)

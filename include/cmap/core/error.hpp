@@ -5,7 +5,7 @@
 
 namespace cmap {
 
-/// Exit codes of every program (DESIGN: "Exit codes").
+/// Exit codes of every program (REPORT, "Exit codes").
 enum class ExitCode : int {
   kDone = 0,
   kRequirementFailed = 1,

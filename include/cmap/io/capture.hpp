@@ -40,7 +40,7 @@ struct CaptureCalibration {
   double imu_time_offset_s = 0.0;  ///< likewise
 };
 
-/// A capture (FORMATS, "A capture"), opened: calibration, tables, IMU and poses are read and checked; images, scans
+/// A capture (FORMATS, "Captures"), opened: calibration, tables, IMU and poses are read and checked; images, scans
 /// and predictions are files that are there, read when they are needed.
 struct Capture {
   std::filesystem::path folder;

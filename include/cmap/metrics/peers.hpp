@@ -1,6 +1,6 @@
 #pragma once
 
-// What other tools print, to lay beside our own numbers (METRICS, "Where other tools depart"). Every function is pure;
+// What other tools print, to lay beside our own numbers (METRICS, "What other tools print"). Every function is pure;
 // distances are squared nearest distances in m^2, NaN stands for "no value".
 
 #include <Eigen/Core>

@@ -10,7 +10,7 @@
 
 namespace cmap {
 
-/// What is done after pre-fusion (PIPELINE, "Post-fusion").
+/// What is done after pre-fusion (PIPELINE, "Registration").
 enum class Registration {
   kPrefusion,  ///< nothing: its result is kept
   kNormal,     ///< Sim(3)-ICP without an expected scale, fixed gate, no crop

@@ -64,7 +64,7 @@ struct SessionGraphOptions {
 /// Where LiDAR-inertial odometry has a session's cameras; none where it has no pose.
 using OdometryPoses = std::vector<std::optional<Eigen::Isometry3d>>;
 
-/// The graph of all frames (PIPELINE, "Global PGO"): one node for each frame of each session, in order; edges between
+/// The graph of all frames (PIPELINE, "Pose graph"): one node for each frame of each session, in order; edges between
 /// consecutive and second-next frames, links between sessions, priors. The first node is fixed.
 /// Priors: where registration has put each frame, and, in sessions that agree with it, where LiDAR-inertial odometry
 /// has it (`odometry`, one for each session, or empty). Registration finds a session's scale and direction better than

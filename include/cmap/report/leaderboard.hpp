@@ -14,7 +14,7 @@
 
 namespace cmap {
 
-/// Numbers that somebody published, in the units of FORMATS ("A leaderboard manifest"): shown as published, never mixed
+/// Numbers that somebody published, in the units of FORMATS, "Leaderboard manifests": shown as published, never mixed
 /// with computed ones.
 struct PublishedScores {
   /// Value by (sequence, method) in the order of the file; no value for a system that failed.

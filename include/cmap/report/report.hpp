@@ -34,7 +34,7 @@ struct RunDescription {
 /// What reports say of themselves; it changes with the meaning of a member or the definition of a metric.
 inline constexpr const char* kReportSchema = "cmap.report/2";
 
-/// The report (DESIGN; configs/report.schema.json). Numbers round-trip; missing ones are null.
+/// The report (REPORT; configs/report.schema.json). Numbers round-trip; missing ones are null.
 nlohmann::ordered_json make_report(const InputDescription& reference, const InputDescription& estimate,
                                    const Evaluation& evaluation, const RunDescription& run);
 
