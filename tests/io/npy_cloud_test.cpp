@@ -95,6 +95,7 @@ TEST(NpyCloud, MatricesAndPosesAreNamed) {
   EXPECT_THAT(refused("'<f8'", "(1, 16)", T), HasSubstr("rows of 16 numbers, as trajectories"));
   // Three points, and four of x y z and one more, are points.
   EXPECT_EQ(read("'<f4'", "(3, 3)", point_bytes<float>(3)).cloud.size(), 3U);
+  EXPECT_EQ(read("'<f8'", "(4, 4)", raw<double>({1, 2, 3, 7, 4, 5, 6, 8, 7, 8, 9, 9, 0, 0, 0, 1})).cloud.size(), 4U);
   EXPECT_EQ(read("'<f4'", "(4, 4)", rows_with<float>({{7}, {8}, {9}, {1}})).cloud.size(), 4U);
   // Triangles: three corners each.
   expect_samples(read("'<f4'", "(4, 3, 3)", point_bytes<float>(12)), 12, false);
