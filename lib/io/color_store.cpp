@@ -109,6 +109,11 @@ void ColorStore::append(const ByteSource& source, const PointColumns& columns, s
 }
 
 void ColorStore::append_bytes(const PointColumns& columns, std::size_t first, std::size_t n,
+  if (columns.color == ColorStorage::kPacked && columns.rgb[0].type == ScalarType::kFloat32) {
+    std::array<float, kPiece> values;
+    decode_packed(columns, first, n, values.data());
+    for (std::size_t i = 0; i < n; ++i) packed_.add(values[i]);
+  }
                               const std::vector<std::uint32_t>* kept) {
   std::uint8_t* out = channels(std::get<Array<Rgb8>>(colors_)) + 3 * size_;
   decode_colors(columns, first, n, out);
@@ -247,6 +252,10 @@ void ColorStore::check_lowest(const ByteSource& source) const {
 
 Colors ColorStore::finish(const ByteSource& source, FileInfo& info) {
   if (declaration_.storage == ColorStorage::kNone || size_ == 0) return {};
+  if (std::string reason = packed_.why_no_color(); !reason.empty()) {
+    info.warnings.push_back({"no_color_stored", std::move(reason)});
+    return {};
+  }
   check_lowest(source);
   if (n_without_color_ == size_) {
     info.warnings.push_back({"no_color_stored", "no color: none of the stored ones is a number (NaN)"});
@@ -256,6 +265,7 @@ Colors ColorStore::finish(const ByteSource& source, FileInfo& info) {
     info.warnings.push_back({"no_color_stored", "no color: all that are stored are black (0 0 0)"});
     return {};
   }
+  if (const auto rounded = packed_.rounded()) info.warnings.push_back(*rounded);
   settle(info);
   if (n_without_color_ > 0) {
     info.warnings.push_back(

@@ -9,6 +9,7 @@
 #include "cmap/io/point_cloud_file.hpp"
 #include "io/byte_source.hpp"
 #include "io/columns.hpp"
+#include "io/packed_floats.hpp"
 
 namespace cmap {
 
@@ -39,6 +40,9 @@ class ColorStore {
   void select(const Array<std::uint8_t>& keep);
 
   /// The colors of all points; notes what was decided and warns of what cannot be right.
+  /// What the reader saw of packed colors that it has taken apart.
+  void add_packed(const PackedFloats& packed) { packed_.add(packed); }
+
   Colors finish(const ByteSource& source, FileInfo& info);
 
  private:
@@ -69,3 +73,4 @@ class ColorStore {
 };
 
 }  // namespace cmap
+  PackedFloats packed_;
