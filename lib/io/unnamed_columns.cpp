@@ -7,6 +7,8 @@
 #include <limits>
 #include <string_view>
 
+#include "io/color_store.hpp"
+
 namespace cmap {
 namespace {
 
@@ -55,6 +57,10 @@ Channel measure_channel(const NumberTable& table, std::size_t column) {
 void compare_channels(const NumberTable& table, std::size_t first, ColumnStatistics& triple) {
   constexpr std::size_t kFewRows = 8;
   constexpr double kWhite8 = 255.0;
+  // Fractions may overshoot white.
+  const auto is_small = [&](const Channel& channel) {
+    return channel.highest <= (channel.fractions ? kColorOvershoot * kWhite8 : kWhite8);
+  };
   if (table.rows() < kFewRows) return;
   bool any_fractions = false, any_whole = false, any_small = false, any_large = false;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -62,8 +68,8 @@ void compare_channels(const NumberTable& table, std::size_t first, ColumnStatist
     if (channel.is_constant()) continue;
     any_fractions = any_fractions || channel.fractions;
     any_whole = any_whole || (!channel.fractions && channel.highest > 1.0);
-    any_small = any_small || channel.highest <= kWhite8;
-    any_large = any_large || channel.highest > kWhite8;
+    any_small = any_small || is_small(channel);
+    any_large = any_large || !is_small(channel);
   }
   triple.alike = !(any_fractions && any_whole);
   triple.one_scale = !(any_small && any_large);
@@ -91,7 +97,8 @@ ColumnStatistics measure(const NumberTable& table, std::size_t first) {
 
 bool may_be_color(const ColumnStatistics& t) {
   constexpr double kHighestColor = 65535.0;
-  if (t.lowest < 0.0 || t.highest > kHighestColor || t.highest == 0.0) return false;
+  const double highest = t.fractions ? kColorOvershoot * kHighestColor : kHighestColor;
+  if (t.lowest < 0.0 || t.highest > highest || t.highest == 0.0) return false;
   return t.alike && !(t.unit_or_zero && t.fractions);  // colors would not all have length 1
 }
 
