@@ -65,7 +65,11 @@ void split_row(std::string_view line, char separator, std::vector<std::string_vi
 
 RowFormat row_format(const ByteSource& source, std::string_view row, std::uint64_t number) {
   row = without_blanks(row);
-  while (!row.empty() && (row.back() == ',' || row.back() == ';')) row = without_blanks(row.substr(0, row.size() - 1));
+  std::size_t n_empty = 0;
+  const char last = row.empty() ? ' ' : row.back();
+  for (; !row.empty() && is_separator(row.back()); ++n_empty) row = without_blanks(row.substr(0, row.size() - 1));
+  // One number and empty cells, as pandas writes NaN.
+  if (n_empty > 1 && row.find_first_of(" \t,;") == std::string_view::npos) return {last, false};
   if (!holds(row, ',')) return {holds(row, ';') ? ';' : ' ', false};
   for (const char separator : {';', '\t'}) {
     if (!holds(row, separator)) continue;
