@@ -21,6 +21,16 @@ TEST(TextReader, EverySeparator) {
   }
 }
 
+TEST(TextReader, LineEndsMayBeMixed) {
+  for (const char* text :
+       {"# made by me\r\n1 2 3\r4 5 6\r", "# made by me\n1 2 3\r4 5 6", "# made by me\r1 2 3\n4 5 6\n",
+        "# made by me\r1 2 3\r\n4 5 6\r\n", "1 2 3\r\r\n4 5 6\r\r\n"}) {
+    const auto file = read_content("a.xyz", text);
+    ASSERT_EQ(file.info.points, 2U) << text;
+    EXPECT_EQ(point(file, 1), Eigen::Vector3d(4, 5, 6)) << text;
+  }
+}
+
 TEST(TextReader, ColorsAboveOneAreEightBit) {
   const auto file = read_content("a.txt", "# x y z\n1 2 3 0 1 1\n4 5 6 255 128 0\n");
   EXPECT_EQ(file.cloud.colors, Colors(Array<Rgb8>{{0, 1, 1}, {255, 128, 0}}));
