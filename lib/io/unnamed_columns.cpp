@@ -139,20 +139,22 @@ std::size_t place_of_color(std::string_view layout) {
   return at == std::string_view::npos ? 0 : 3 + width_of(layout.substr(0, at));
 }
 
-std::string column_range(std::size_t first, std::size_t last) {
+std::string column_range(const NumberTable& table, std::size_t first, std::size_t last) {
+  first += table.n_before;
+  last += table.n_before;
   return first == last ? fmt::format("column {}", first) : fmt::format("columns {} to {}", first, last);
 }
 
 void note_ignored(const NumberTable& table, FileInfo& info) {
   const bool one = table.columns == 4;
   info.notes.push_back(fmt::format("{} ignored; names such as 'x y z r g b' would say what {}",
-                                   column_range(4, table.columns), one ? "it holds" : "they hold"));
+                                   column_range(table, 4, table.columns), one ? "it holds" : "they hold"));
 }
 
 void note_others(const NumberTable& table, std::size_t color, FileInfo& info) {
   std::vector<std::string> unused;
-  if (color > 3) unused.push_back(column_range(4, color));
-  if (color + 3 < table.columns) unused.push_back(column_range(color + 4, table.columns));
+  if (color > 3) unused.push_back(column_range(table, 4, color));
+  if (color + 3 < table.columns) unused.push_back(column_range(table, color + 4, table.columns));
   for (const std::string& columns : unused) info.notes.push_back(columns + " not used");
 }
 
@@ -176,19 +178,42 @@ std::optional<ColumnTriple> find_unnamed_colors(const NumberTable& table, bool i
         {"undecidable_columns",
          fmt::format("no color taken: {} can be read in more than one way (colors, normals, intensity); "
                      "names such as 'x y z r g b' would say which they are",
-                     column_range(4, table.columns))});
+                     column_range(table, 4, table.columns))});
     return std::nullopt;
   }
   const std::size_t color = place_of_color(fitting[0]);
   if (color == 0) {
     info.notes.push_back(fmt::format(
-        "no color: {} taken as a normal{}", column_range(4, table.columns),
+        "no color: {} taken as a normal{}", column_range(table, 4, table.columns),
         measure(table, 3).highest == 0.0 && measure(table, 3).lowest == 0.0 ? " that is zero throughout" : ""));
     return std::nullopt;
   }
-  info.notes.push_back(fmt::format("columns {} to {} taken as red, green and blue", color + 1, color + 3));
+  info.notes.push_back(fmt::format("{} taken as red, green and blue", column_range(table, color + 1, color + 3)));
   note_others(table, color, info);
   return ColumnTriple{color, color + 1, color + 2};
+}
+
+RowNumbers find_row_numbers(const NumberTable& table) {
+  constexpr std::size_t kFewest = 8, kColorsOrNormals = 6;
+  if (table.columns < 4 || table.rows() < kFewest) return RowNumbers::kNone;
+  const double first = table.at(0, 0);
+  if (first != 0.0 && first != 1.0) return RowNumbers::kNone;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    if (table.at(row, 0) != first + table.row_step * static_cast<double>(row)) return RowNumbers::kNone;
+  }
+  // Coordinates do not stand still in a map; those of one line of a raster do.
+  if (measure_channel(table, 1).is_constant() || measure_channel(table, 2).is_constant()) return RowNumbers::kNone;
+  if (table.columns == kColorsOrNormals && (fits(table, "r") || fits(table, "n"))) return RowNumbers::kNone;
+  const auto has_fractions = [&](std::size_t column) { return measure_channel(table, column).fractions; };
+  return has_fractions(1) && has_fractions(2) && has_fractions(3) ? RowNumbers::kCertain : RowNumbers::kUndecidable;
+}
+
+NumberTable without_first_column(const NumberTable& table) {
+  NumberTable rest{table.columns - 1, {}, table.row_step, table.n_before + 1};
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    for (std::size_t column = 1; column < table.columns; ++column) rest.values.push_back(table.at(row, column));
+  }
+  return rest;
 }
 
 }  // namespace cmap

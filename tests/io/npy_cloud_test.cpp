@@ -101,6 +101,18 @@ TEST(NpyCloud, MatricesAndPosesAreNamed) {
   expect_samples(read("'<f4'", "(4, 3, 3)", point_bytes<float>(12)), 12, false);
 }
 
+TEST(NpyCloud, NumbersOfRowsAreNoX) {
+  std::vector<double> rows;
+  for (int i = 0; i < 10; ++i) {
+    const double t = i;
+    rows.insert(rows.end(), {t, 0.5 + t, 0.25 * t * t, 1.125 - t, 20 * t, 255 - t, t * t});
+  }
+  const auto file = read("'<f8'", "(10, 7)", raw(rows));
+  EXPECT_EQ(point(file, 3), Eigen::Vector3d(3.5, 2.25, -1.875));
+  EXPECT_EQ(std::get<Array<Rgb8>>(file.cloud.colors)[3], (Rgb8{60, 252, 9}));
+  EXPECT_THAT(all_notes(file), HasSubstr("column 0 numbers the rows"));
+}
+
 TEST(NpyCloud, TrajectoriesAreNamed) {
   const double s = std::sqrt(0.5);
   EXPECT_THAT(refused("'<f8'", "(2, 7)", rows_with<double>({{0, 0, 0, 1}, {0, s, 0, -s}})), HasSubstr("a trajectory"));
