@@ -139,6 +139,28 @@ void keep_binary(std::optional<CoordinateStep>& coarsest, const std::array<Axis,
   for (int a = 0; a < 3; ++a) keep_coarser(coarsest, found[static_cast<std::size_t>(a)].step_m, axes, a, cause);
 }
 
+/// Whether all values are so many steps from the first, both even and odd ones.
+bool is_in_steps(const Axis& axis, double step_m) {
+  std::size_t n_odd = 0;
+  for (std::size_t i = 0; i < axis.world.size(); ++i) {
+    const double rounding_m = 0.51 * (axis.rounding_m[i] + axis.rounding_m[0]);
+    const double steps = (axis.world[i] - axis.world[0]) / step_m, whole = std::round(steps);
+    if (rounding_m > step_m / 8.0 || std::abs(steps - whole) * step_m > rounding_m + 1e-15 * std::abs(axis.world[i])) {
+      return false;
+    }
+    n_odd += std::fmod(std::abs(whole), 2.0) == 1.0 ? 1U : 0U;
+  }
+  const double odd_share = static_cast<double>(n_odd) / static_cast<double>(axis.world.size());
+  return odd_share > kShare && odd_share < 1.0 - kShare;
+}
+
+/// Floats near zero are finer: where an axis there comes in the steps of a far one, they are not those of floats.
+bool is_grid(const std::array<Axis, 3>& axes, const CoordinateStep& step, int bits) {
+  return std::ranges::any_of(axes, [&](const Axis& axis) {
+    return 2.0 * float_step(axis.largest(), bits) <= step.step_m && is_in_steps(axis, step.step_m);
+  });
+}
+
 }  // namespace
 
 std::optional<CoordinateStep> coarse_step(const PointCloud& cloud, double limit_m) {
@@ -149,6 +171,9 @@ std::optional<CoordinateStep> coarse_step(const PointCloud& cloud, double limit_
   const std::array<double, 3> printed_m{printed_step_m(axes[0]), printed_step_m(axes[1]), printed_step_m(axes[2])};
   keep_binary(coarsest, axes, printed_m, kFloat16Bits, limit_m, kFloat16);
   keep_binary(coarsest, axes, printed_m, kFloat32Bits, limit_m, kFloat32);
+  if (coarsest && is_grid(axes, *coarsest, coarsest->cause == kFloat16 ? kFloat16Bits : kFloat32Bits)) {
+    coarsest->cause = kGrid;
+  }
   for (int a = 0; a < 3; ++a) {
     const Axis& axis = axes[static_cast<std::size_t>(a)];
     const double held_m = reached_by_share(axis.rounding_m);

@@ -9,9 +9,10 @@ namespace cmap {
 /// The steps in which a cloud's coordinates come.
 struct CoordinateStep {
   enum class Cause {
-    kFloat16,    ///< every coordinate is a float16 number
-    kFloat32,    ///< every coordinate is a float32 number
-    kDigits,     ///< every coordinate of the axis is a whole number of decimal steps, as after printing few digits
+    kFloat16,  ///< every coordinate is a float16 number
+    kFloat32,  ///< every coordinate is a float32 number
+    kGrid,    ///< another axis comes in the same steps, where floats have finer ones: a raster, the scale of a LAS file
+    kDigits,  ///< every coordinate of the axis is a whole number of decimal steps, as after printing few digits
     kOwnOffsets  ///< the cloud is held as float32 offsets, and is too wide for them
   };
   double step_m = 0.0;

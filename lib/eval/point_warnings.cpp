@@ -57,7 +57,8 @@ std::uint64_t n_repeated(const PointBlocks& points) {
 
 /// The steps of a raster are where its points are: none is nearer to the next one, and none shares its place.
 bool is_raster(const CoordinateStep& step, const SampledSpacing& spacing) {
-  return step.cause == CoordinateStep::Cause::kDigits && spacing.spacing_m > 0.99 * step.step_m &&
+  using enum CoordinateStep::Cause;
+  return (step.cause == kDigits || step.cause == kGrid) && spacing.spacing_m > 0.99 * step.step_m &&
          spacing.spacing_m < 1.5 * step.step_m && spacing.repeated_share < kManyRepeated;
 }
 
@@ -72,6 +73,10 @@ Warning step_warning(std::string_view which, const CoordinateStep& step, const E
               fmt::format("{}, as {} has at {:.7g} m, {}: store the map in {}, or take an offset off it first", steps,
                           step.cause == CoordinateStep::Cause::kFloat16 ? "float16" : "float32", step.coordinate,
                           needed, step.cause == CoordinateStep::Cause::kFloat16 ? "float32" : "double precision")};
+    case CoordinateStep::Cause::kGrid:
+      return {"coarse_coordinates",
+              fmt::format("{}, those of a raster or of the file's own scale, {}: no threshold below them says more",
+                          steps, needed)};
     case CoordinateStep::Cause::kDigits:
       return {"coarse_coordinates",
               fmt::format("{}, as if rounded to few digits ({:.7g}), {}: store it with more digits", steps,

@@ -35,7 +35,7 @@ class RowParser {
   RowParser(const LineReader& lines, std::span<const Field> fields, const PointSchema& schema)
       : lines_(lines), fields_(fields), targets_(field_targets(fields, schema)) {}
 
-  RowStage::Row parse(std::string_view line) const {
+  RowStage::Row parse(std::string_view line) {
     RowStage::Row row{};
     for (std::size_t i = 0; i < fields_.size(); ++i) {
       const Field& field = fields_[i];
@@ -49,6 +49,8 @@ class RowParser {
       lines_.fail("'{}' follows the last of the point's values", extra);
     return row;
   }
+
+  const PackedFloats& packed() const { return packed_; }
 
  private:
   std::string_view token_of(const Field& field, std::string_view& line) const {
@@ -66,7 +68,7 @@ class RowParser {
     for (; count > 0; --count) token_of(field, line);
   }
 
-  void store(const Field& field, Target target, std::string_view token, RowStage::Row& row) const {
+  void store(const Field& field, Target target, std::string_view token, RowStage::Row& row) {
     switch (target) {
       case Target::kSkip:
         break;
@@ -111,13 +113,14 @@ class RowParser {
 
   /// A packed color is the integer 0x..RRGGBB, or the float with these bits (then never a whole number but 0). Written
   /// as "nan", whatever its bits were, it is lost.
-  void unpack(const Field& field, std::string_view token, RowStage::Row& row) const {
-    const bool whole = token.find_first_not_of("0123456789") == std::string_view::npos;
+  void unpack(const Field& field, std::string_view token, RowStage::Row& row) {
+    const bool is_float = field.type == ScalarType::kFloat32;
     std::uint32_t bits = 0;
-    if (field.type == ScalarType::kFloat32 && !whole) {
+    if (is_float && !is_exact_integer(token)) {
       float value = 0.0F;
       if (!parse_number(token, value)) lines_.fail("'{}': '{}' is not a number", field.name, token);
       if (std::isnan(value)) return row.rgb.fill(std::numeric_limits<double>::quiet_NaN());
+      packed_.add_printed(token, value);
       bits = std::bit_cast<std::uint32_t>(value);
     } else {
       double value = 0.0;
@@ -125,13 +128,25 @@ class RowParser {
         lines_.fail("'{}': '{}' is not a packed color", field.name, token);
       }
       bits = static_cast<std::uint32_t>(static_cast<std::int64_t>(value));
+      if (is_float) packed_.add_whole(bits);
     }
     for (unsigned k = 0; k < 3; ++k) row.rgb[k] = (bits >> (16 - 8 * k)) & 0xff;
+  }
+
+  /// Whether a printed float is an integer to the last digit: "16711680", or "16711680.000000", which floats hold.
+  static bool is_exact_integer(std::string_view token) {
+    constexpr double kFirstInexact = 1 << 24;
+    const std::size_t rest = token.find_first_not_of("0123456789");
+    if (rest == std::string_view::npos) return true;
+    double value = 0.0;
+    return token[rest] == '.' && token.find_first_not_of('0', rest + 1) == std::string_view::npos &&
+           parse_number(token, value) && value < kFirstInexact;
   }
 
   const LineReader& lines_;
   std::span<const Field> fields_;
   std::vector<Target> targets_;
+  PackedFloats packed_;
 };
 
 }  // namespace
@@ -170,7 +185,7 @@ void note_lines_left_over(LineReader& lines, FileInfo& info) {
 
 void read_ascii_rows(LineReader& lines, std::uint64_t n, std::span<const Field> fields, const PointSchema& schema,
                      CloudBuilder& builder) {
-  const RowParser parser(lines, fields, schema);
+  RowParser parser(lines, fields, schema);
   RowStage stage(builder, schema.layout.color.storage != ColorStorage::kNone);
   std::string_view line;
   for (std::uint64_t i = 0; i < n;) {
@@ -181,6 +196,7 @@ void read_ascii_rows(LineReader& lines, std::uint64_t n, std::span<const Field> 
     ++i;
   }
   stage.flush();
+  builder.add_packed(parser.packed());
 }
 
 }  // namespace cmap

@@ -39,20 +39,19 @@ std::vector<StampedFile> read_file_table(const fs::path& folder, const char* nam
   return files;
 }
 
-/// The files of a table as far as they are wanted.
-std::vector<StampedFile> wanted_files(Capture& capture, const char* name, Want want, double offset_s,
-                                      const Faults& faults) {
-  std::vector<StampedFile> files;
+/// Reads a part as far as it is wanted. What is wrong with one that only may be there are warnings.
+void read_part(Capture& capture, const char* name, Want want, const Faults& faults,
+               const std::function<void(const Faults&)>& read) {
   if (want == Want::kYes) {
-    faults.attempt([&] { files = read_file_table(capture.folder, name, offset_s, faults); });
+    faults.attempt([&] { read(faults); });
   } else if (want == Want::kIfUsable && fs::exists(capture.folder / name)) {
-    try {
-      files = read_file_table(capture.folder, name, offset_s, {});
-    } catch (const InputError& error) {
-      capture.warnings.push_back({"part_left_out", fmt::format("{}; the run goes on without", error.what())});
+    std::vector<std::string> found;
+    const Faults all(found);
+    all.attempt([&] { read(faults.goes_on() ? all : Faults()); });
+    for (const std::string& fault : found) {
+      capture.warnings.push_back({"part_left_out", fmt::format("{}; the run goes on without", fault)});
     }
   }
-  return files;
 }
 
 std::vector<ImuSample> read_imu(const fs::path& path, double unit_mps2, double offset_s, const Faults& faults) {
@@ -127,14 +126,15 @@ Capture open_capture(const fs::path& folder, const CaptureParts& parts, const Fa
   capture.calibration = description.calibration;
   capture.warnings = std::move(description.warnings);
   const CaptureCalibration& calibration = capture.calibration;
-  capture.images = wanted_files(capture, "images.csv", parts.images, calibration.image_time_offset_s, faults);
-  capture.scans = wanted_files(capture, "lidar.csv", parts.scans, 0.0, faults);
+  read_part(capture, "images.csv", parts.images, faults, [&](const Faults& found) {
+    capture.images = read_file_table(folder, "images.csv", calibration.image_time_offset_s, found);
+  });
+  read_part(capture, "lidar.csv", parts.scans, faults,
+            [&](const Faults& found) { capture.scans = read_file_table(folder, "lidar.csv", 0.0, found); });
   const fs::path imu = folder / "imu.csv", lio = folder / "lio.tum", predictions = folder / "predictions";
-  if (parts.imu != Want::kNo && fs::exists(imu)) {
-    faults.attempt([&] {
-      capture.imu = read_imu(imu, description.acceleration_unit_mps2, calibration.imu_time_offset_s, faults);
-    });
-  }
+  read_part(capture, "imu.csv", fs::exists(imu) ? parts.imu : Want::kNo, faults, [&](const Faults& found) {
+    capture.imu = read_imu(imu, description.acceleration_unit_mps2, calibration.imu_time_offset_s, found);
+  });
   if (fs::exists(lio)) faults.attempt([&] { capture.lio = read_lio(lio, capture.warnings); });
   if (parts.sessions == Want::kNo) return capture;
   faults.attempt([&] { capture.sessions = find_sessions(predictions, capture.warnings); });

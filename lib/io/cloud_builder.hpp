@@ -35,6 +35,8 @@ class CloudBuilder {
   void append(const PointColumns& columns, std::size_t n);
   /// Counts n points that the reader does not append, and why ("withheld").
   void leave_out(std::string_view reason, std::uint64_t n);
+  /// What the reader saw of packed colors that it has taken apart.
+  void add_packed(const PackedFloats& packed) { colors_.add_packed(packed); }
   std::uint64_t seen() const { return seen_; }
 
   /// The cloud; fills in what `info` says of points and colors. Throws InputError if no point is left.

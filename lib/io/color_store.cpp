@@ -11,16 +11,15 @@ namespace cmap {
 namespace {
 
 constexpr float kEightBitWhite = 255.0F, kSixteenBitWhite = 65535.0F;
-// What rounding, interpolation and exposure leave outside of the range: a picture resampled with a bicubic filter
-// reaches 5 % beyond, an overexposed one in [0,1] more.
-constexpr float kOvershoot = 1.06F, kOvershootOfOne = 1.5F;
+// An overexposed picture in [0,1] reaches farther beyond than kColorOvershoot.
+constexpr float kOvershootOfOne = 1.5F;
 constexpr float kUndershoot = -0.06F;
 // Below, leaving the range is rounding and not worth a word.
 constexpr float kRounding = 1e-3F;
 
 float white_for(float highest) {
   if (highest <= kOvershootOfOne) return 1.0F;
-  return highest <= kOvershoot * kEightBitWhite ? kEightBitWhite : kSixteenBitWhite;
+  return highest <= kColorOvershoot * kEightBitWhite ? kEightBitWhite : kSixteenBitWhite;
 }
 
 /// What a piece of floats holds, NaN aside.
@@ -110,6 +109,11 @@ void ColorStore::append(const ByteSource& source, const PointColumns& columns, s
 
 void ColorStore::append_bytes(const PointColumns& columns, std::size_t first, std::size_t n,
                               const std::vector<std::uint32_t>* kept) {
+  if (columns.color == ColorStorage::kPacked && columns.rgb[0].type == ScalarType::kFloat32) {
+    std::array<float, kPiece> values;
+    decode_packed(columns, first, n, values.data());
+    for (std::size_t i = 0; i < n; ++i) packed_.add(values[i]);
+  }
   std::uint8_t* out = channels(std::get<Array<Rgb8>>(colors_)) + 3 * size_;
   decode_colors(columns, first, n, out);
   n = compact(out, n, kept);
@@ -156,7 +160,7 @@ void ColorStore::append_floats(const ByteSource& source, const PointColumns& col
     const auto place = static_cast<std::size_t>(std::find(rgb.begin(), rgb.end(), value) - rgb.begin());
     return std::pair{point + (kept == nullptr ? place / 3 : (*kept)[place / 3]), place % 3};
   };
-  if (range.high > kOvershoot * kSixteenBitWhite) {
+  if (range.high > kColorOvershoot * kSixteenBitWhite) {
     const auto [at, channel] = place_of(range.high);
     source.fail("point {}: {} = {:g}; colors lie in 0 to 1, 0 to 255 or 0 to 65535", at + 1,
                 declaration_.names[channel], range.high);
@@ -248,6 +252,10 @@ void ColorStore::check_lowest(const ByteSource& source) const {
 Colors ColorStore::finish(const ByteSource& source, FileInfo& info) {
   if (declaration_.storage == ColorStorage::kNone || size_ == 0) return {};
   check_lowest(source);
+  if (std::string reason = packed_.why_no_color(); !reason.empty()) {
+    info.warnings.push_back({"no_color_stored", std::move(reason)});
+    return {};
+  }
   if (n_without_color_ == size_) {
     info.warnings.push_back({"no_color_stored", "no color: none of the stored ones is a number (NaN)"});
     return {};
@@ -257,6 +265,7 @@ Colors ColorStore::finish(const ByteSource& source, FileInfo& info) {
     return {};
   }
   settle(info);
+  if (const auto rounded = packed_.rounded()) info.warnings.push_back(*rounded);
   if (n_without_color_ > 0) {
     info.warnings.push_back(
         {"points_without_color",

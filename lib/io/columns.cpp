@@ -99,6 +99,14 @@ void decode_colors(const PointColumns& columns, std::size_t first, std::size_t n
   }
 }
 
+void decode_packed(const PointColumns& columns, std::size_t first, std::size_t n, float* values) {
+  const std::byte* data = columns.rgb[0].data + first * columns.rgb[0].stride;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::byte* place = data + i * columns.rgb[0].stride;
+    values[i] = columns.swap_bytes ? load<float, true>(place) : load<float, false>(place);
+  }
+}
+
 template void decode_positions(const PointColumns&, std::size_t, std::size_t, float*);
 template void decode_positions(const PointColumns&, std::size_t, std::size_t, double*);
 template void decode_colors(const PointColumns&, std::size_t, std::size_t, std::uint8_t*);

@@ -39,4 +39,7 @@ void decode_positions(const PointColumns& columns, std::size_t first, std::size_
 template <class Channel>
 void decode_colors(const PointColumns& columns, std::size_t first, std::size_t n, Channel* rgb);
 
+/// The floats of kPacked colors as they are.
+void decode_packed(const PointColumns& columns, std::size_t first, std::size_t n, float* values);
+
 }  // namespace cmap

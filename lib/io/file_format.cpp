@@ -1,9 +1,11 @@
 #include "io/file_format.hpp"
 
 #include <algorithm>
+#include <span>
 
 #include "io/foreign_formats.hpp"
 #include "io/format_readers.hpp"
+#include "io/transform_numbers.hpp"
 
 namespace cmap {
 namespace {
@@ -24,6 +26,22 @@ bool is_pcd(const FileStart& start) {
     if (!line.starts_with("#") && line.find_first_not_of(" \t") != std::string_view::npos) return false;
   }
   return false;
+}
+
+/// Refuses a transform in brackets, as JSON or as NumPy prints it; rows of bare numbers are the text reader's.
+void refuse_transform(const ByteSource& source, const FileStart& start) {
+  constexpr std::size_t kMostBytes = 4096;
+  if (!start.text || !start.whole || start.bytes.size() > kMostBytes || start.bytes.starts_with('#') ||
+      start.bytes.find_first_of("[{") == std::string_view::npos) {
+    return;
+  }
+  try {
+    ByteSource bytes(source.name(), std::as_bytes(std::span(start.bytes)));
+    parse_transform(bytes);
+  } catch (const Error&) {
+    return;
+  }
+  source.fail("holds one 4x4 or 3x4 matrix, a transform, and no point cloud; --transform takes it");
 }
 
 /// A reader that has no options.
@@ -62,6 +80,7 @@ const CloudFormat* find(const CloudFormat (&formats)[n], const FileStart& start)
 
 const CloudFormat& detect_format(ByteSource& source) {
   const FileStart start = file_start(source);
+  refuse_transform(source, start);
   if (const auto what = foreign_content(start)) source.fail("{}; {}", *what, kReadableFormats);
   if (const CloudFormat* format = find(kByContent, start)) return *format;
   if (const auto what = foreign_extension(start)) source.fail("{}; {}", *what, kReadableFormats);

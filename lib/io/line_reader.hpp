@@ -7,8 +7,10 @@
 
 namespace cmap {
 
-/// The lines of a source, counted from 1, without a UTF-8 byte order mark at its start. LF and CRLF end a line; where
-/// the first line ends with a lone CR (as on old Macs), so do all. The last line may lack its end.
+/// The lines of a source, counted from 1, without a UTF-8 byte order mark at its start. LF, CRLF and CR (as on old
+/// Macs) end a line, also where a file mixes them. The last line may lack its end. Once a line has ended with a lone
+/// CR, an LF behind the CR of the line last read is left to the source: it may be the first byte of what follows a
+/// header.
 class LineReader {
  public:
   /// Throws InputError for UTF-16.
@@ -26,9 +28,14 @@ class LineReader {
   }
 
  private:
+  std::size_t find_end();
+  void skip_left_lf();
+
   ByteSource& source_;
   std::uint64_t number_ = 0;
-  char end_ = '\n';
+  char end_ = '\n';         ///< of the last line; where ends are alike, its first search finds the next
+  bool lone_cr_ = false;    ///< a line has ended with CR alone
+  bool may_be_lf_ = false;  ///< the next byte belongs to the last line's end if it is an LF
 };
 
 /// The text without a UTF-8 byte order mark at its start.

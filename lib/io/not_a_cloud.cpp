@@ -20,14 +20,23 @@ bool all_have(Rows rows, std::size_t n_columns) {
   return !rows.empty() && std::all_of(rows.begin(), rows.end(), has_n);
 }
 
-bool is_last_row(const double* row) { return row[0] == 0.0 && row[1] == 0.0 && row[2] == 0.0 && row[3] == 1.0; }
+bool is_last_row(const double* row) {
+  const Eigen::Map<const Eigen::Vector4d> last(row);
+  return (last - Eigen::Vector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() <= kLastRowTolerance;
+}
 
-/// Whether the 3x3 block of a 3x4 matrix, row after row, is a rotation, with a scale or not.
+/// Whether a block is a rotation or a reflection, with a scale or not.
+bool is_rotation(const Eigen::Matrix3d& block) {
+  const double scale = block.row(0).norm();
+  if (!(scale > 1e-6)) return false;
+  const Eigen::Matrix3d unit = block / scale;
+  return std::min(deviation_from_rotation(unit), deviation_from_rotation(-unit)) <= kRotationTolerance;
+}
+
+/// The same of the 3x3 block of a 3x4 matrix, row after row.
 bool is_rotation(const double* rows_3x4) {
   using Matrix = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
-  const Eigen::Matrix3d block = Eigen::Map<const Matrix>(rows_3x4).leftCols<3>();
-  const double scale = block.row(0).norm();
-  return scale > 1e-6 && deviation_from_rotation(block / scale) <= kRotationTolerance;
+  return is_rotation(Eigen::Matrix3d(Eigen::Map<const Matrix>(rows_3x4).leftCols<3>()));
 }
 
 /// The rows one after the other, as one.
@@ -40,13 +49,23 @@ Row joined(Rows rows) {
 bool is_transform(Rows rows) {
   const Row all = joined(rows);
   if (rows.size() == 4 && all_have(rows, 4)) {
-    if (is_last_row(&all[12])) return true;
+    if (is_last_row(&all[12])) return is_rotation(all.data());
     // The transpose, which moves row vectors.
     const bool last_column = all[3] == 0.0 && all[7] == 0.0 && all[11] == 0.0 && all[15] == 1.0;
     return last_column && is_rotation(all.data());
   }
   if (rows.size() == 3 && all_have(rows, 4)) return is_rotation(all.data());
   return rows.size() == 1 && all.size() == 16 && is_last_row(&all[12]);
+}
+
+/// A rotation, or [fx s cx; 0 fy cy; 0 0 1].
+bool is_rotation_or_camera(Rows rows) {
+  if (rows.size() != 3 || !all_have(rows, 3)) return false;
+  const Row all = joined(rows);
+  const Eigen::Matrix3d matrix = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(all.data());
+  const bool is_camera = matrix(0, 0) > 0.0 && matrix(1, 1) > 0.0 && matrix(1, 0) == 0.0 &&
+                         (matrix.row(2) - Eigen::RowVector3d(0, 0, 1)).cwiseAbs().maxCoeff() <= kLastRowTolerance;
+  return is_camera || is_rotation(matrix);
 }
 
 /// Rows of 12 or 16 numbers, each a matrix.
@@ -87,10 +106,14 @@ bool is_tum(Rows rows) {
   return !std::all_of(rows.begin(), rows.end(), may_be_normals);
 }
 
-/// Few rows of many numbers: a cloud, and with 4 or 6 rows its weights or colors, in which each row is a coordinate.
+/// Fewer rows than columns: a cloud in which each row is a coordinate or a channel, several clouds beside each other,
+/// a picture. Of three rows, five columns are no layout of points either.
 bool is_transposed(Rows rows) {
-  if (rows.size() < 3 || rows.size() > 7) return false;
-  return rows[0].size() > (rows.size() == 3 ? 6U : 20U) && all_have(rows, rows[0].size());
+  constexpr std::size_t kMostOfPoints = 12;  // coordinates, color, normal and three more
+  if (rows.empty() || !all_have(rows, rows[0].size())) return false;
+  const std::size_t n_columns = rows[0].size();
+  if (rows.size() == 3) return n_columns == 5 || n_columns > 6;
+  return n_columns > kMostOfPoints && n_columns > rows.size();
 }
 
 }  // namespace
@@ -101,6 +124,7 @@ std::optional<std::string> not_a_cloud(Rows rows, bool complete) {
     return fmt::format("is a {}x{} matrix, a transform, and no point cloud; --transform takes it",
                        rows.size() == 3 ? 3 : 4, 4);
   }
+  if (complete && is_rotation_or_camera(rows)) return "is a 3x3 rotation or camera matrix, and no point cloud";
   if (is_pose_rows(rows)) {
     return fmt::format("holds poses (rows of {} numbers, each a {}x4 matrix), not points: a trajectory", rows[0].size(),
                        rows[0].size() / 4);
@@ -108,8 +132,10 @@ std::optional<std::string> not_a_cloud(Rows rows, bool complete) {
   if (is_stacked(rows)) return "holds poses (4x4 matrices below each other), not points: a trajectory";
   if (is_tum(rows)) return std::string(pose_hint());
   if (complete && is_transposed(rows)) {
-    return fmt::format("holds {} rows of {} numbers: a transposed cloud; write one point a line", rows.size(),
-                       rows[0].size());
+    return fmt::format(
+        "holds {} row{} of {} numbers: a transposed cloud, or several things beside each other; write one "
+        "cloud a file, one point a line, or name the columns (x y z ...)",
+        rows.size(), rows.size() == 1 ? "" : "s", rows[0].size());
   }
   return std::nullopt;
 }

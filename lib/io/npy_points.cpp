@@ -26,7 +26,7 @@ NumberTable sample_of(const NpyArray& array, const PointTable& table, ScalarType
   constexpr std::uint64_t kMostRows = 20000;
   const std::uint64_t step = (table.rows - 1) / kMostRows + 1;
   const std::size_t bytes = scalar_bytes(type);
-  NumberTable sample{table.columns, {}};
+  NumberTable sample{table.columns, {}, static_cast<double>(step)};
   for (std::uint64_t row = 0; row < table.rows; row += step) {
     for (std::size_t j = 0; j < table.columns; ++j) {
       const std::size_t place = table.column_offset(j, bytes) + row * table.stride(bytes);
@@ -90,8 +90,14 @@ NpyPoints plain_points(const NpyArray& array, FileInfo& info) {
     array.fail("has the shape {}: positions and unit quaternions, a trajectory and no points",
                shape_text(array.shape()));
   }
-  if (const auto color = find_unnamed_colors(sample, false, info)) {
-    set_colors(points, {column((*color)[0]), column((*color)[1]), column((*color)[2])});
+  // Whole numbers throughout are cells of a grid: x as well as anything.
+  const std::size_t first = find_row_numbers(sample) == RowNumbers::kCertain ? 1 : 0;
+  if (first > 0) {
+    note(array, "column 0 numbers the rows; columns 1 to 3 taken as x, y and z", info);
+    for (std::size_t k = 0; k < 3; ++k) points.columns.position[k] = column(k + first);
+  }
+  if (const auto color = find_unnamed_colors(first > 0 ? without_first_column(sample) : sample, false, info)) {
+    set_colors(points, {column(first + (*color)[0]), column(first + (*color)[1]), column(first + (*color)[2])});
   }
   return points;
 }

@@ -60,7 +60,8 @@ void refuse_matrices(const NpyArray& array) {
   const auto all = [&](auto&& test) { return std::all_of(matrices.begin(), matrices.end(), test); };
   const std::string_view several = n == 2 ? "a " : "";
   const std::string_view plural = n == 2 ? "" : "s";
-  if (rows == 4 && all(is_transform_matrix)) {
+  // Four points may end with 0 0 0 1.
+  if (rows == 4 && all(is_transform_matrix) && (n > 2 || all(is_rotation_block))) {
     fail_shape(array, fmt::format("{}4x4 transform{}, no points", several, plural));
   }
   if (rows == 3 && columns == 3 && (all(is_rotation_block) || all(is_camera_matrix))) {

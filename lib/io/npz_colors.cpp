@@ -71,7 +71,7 @@ void set_colors(NpyPoints& points, const std::vector<const NpyArray*>& channels)
 }
 
 void set_packed_colors(NpyPoints& points, const NpyArray& packed) {
-  points.columns.rgb[0] = {packed.bytes.data(), sizeof(std::uint32_t), ScalarType::kUint32};
+  points.columns.rgb[0] = {packed.bytes.data(), sizeof(std::uint32_t), packed.header.fields[0].scalar};
   points.columns.color = points.layout.color.storage = ColorStorage::kPacked;
   points.layout.color.type = ScalarType::kUint8;
 }

@@ -45,9 +45,10 @@ void RowReader::split() {
   if (!format_ && begins_with_number(line_)) format_ = row_format(lines_.source(), line_, lines_.number());
   const char separator = format_ ? format_->separator : separator_of_names(line_);
   split_row(line_, separator, cells_);
-  if (n_columns_ == 0) n_columns_ = cells_.size();
+  const bool ends_open = line_.back() == separator;
   // A separator at the end ends the last cell, unless that is the empty one behind it.
-  if (cells_.size() + 1 == n_columns_ && line_.back() == separator) cells_.emplace_back();
+  if (n_columns_ == 0) n_columns_ = cells_.size() + (ends_open && cells_.back().empty() ? 1 : 0);
+  if (cells_.size() + 1 == n_columns_ && ends_open) cells_.emplace_back();
 }
 
 double RowReader::number(std::size_t column) const {

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "cmap/core/spelling.hpp"
+#include "io/column_names.hpp"
 #include "io/foreign_formats.hpp"
 #include "io/not_a_cloud.hpp"
 #include "io/point_schema.hpp"
@@ -14,18 +15,6 @@ namespace cmap {
 namespace {
 
 using Names = std::vector<std::string>;
-
-/// The names of a header line, cut like the rows, or else at any separator.
-Names names_of(std::string_view line, const RowFormat& format, std::size_t n_columns) {
-  std::vector<std::string_view> columns;
-  while (line.starts_with('/') || line.starts_with('#')) line.remove_prefix(1);
-  split_row(line, format.separator, columns);
-  Names names(columns.begin(), columns.end());
-  if (names.size() == n_columns) return names;
-  Names others;
-  for (std::string_view column; next_column(line, column);) others.emplace_back(column);
-  return others.size() == n_columns ? others : names;
-}
 
 /// Whether the first column numbers the rows or labels them, as R's write.table() puts it there without a name.
 bool names_rows(const NumberTable& table) {
@@ -39,7 +28,7 @@ bool names_rows(const NumberTable& table) {
 }
 
 Names header_names(const TextStart& start, const NumberTable& table) {
-  Names names = names_of(start.header->text, start.format, table.columns);
+  Names names = column_names(start.header->text, start.format, table.columns);
   if (names.size() + 1 == table.columns && names_rows(table)) names.insert(names.begin(), "");
   return names;
 }
@@ -47,7 +36,7 @@ Names header_names(const TextStart& start, const NumberTable& table) {
 /// The last comment that names as many columns as there are, coordinates among them.
 std::optional<Names> commented_names(const TextStart& start, std::size_t n_columns) {
   for (auto comment = start.comments.rbegin(); comment != start.comments.rend(); ++comment) {
-    Names names = names_of(comment->text, start.format, n_columns);
+    Names names = column_names(comment->text, start.format, n_columns);
     if (names.size() == n_columns && find_point_names(names).position) return names;
   }
   return std::nullopt;
@@ -108,6 +97,26 @@ bool is_pts(const ByteSource& source) {
   return lower_case(std::filesystem::path(source.name()).extension().string()) == ".pts";
 }
 
+void assign_by_numbers(const ByteSource& source, const NumberTable& table, TextLayout& layout, FileInfo& info) {
+  const RowNumbers numbers = find_row_numbers(table);
+  if (numbers == RowNumbers::kNone) {
+    layout.color = find_unnamed_colors(table, is_pts(source), info);
+    return;
+  }
+  if (numbers == RowNumbers::kUndecidable) {
+    source.fail(
+        "column 1 counts from {:g} on: numbers of the rows, or an x; a first line such as 'id x y z r g b' or "
+        "'x y z i r g b', with as many names as there are columns, says which",
+        table.at(0, 0));
+  }
+  info.notes.emplace_back("column 1 numbers the rows; columns 2 to 4 taken as x, y and z");
+  layout.position = {1, 2, 3};
+  layout.color = find_unnamed_colors(without_first_column(table), is_pts(source), info);
+  if (layout.color) {
+    for (std::size_t& column : *layout.color) ++column;
+  }
+}
+
 }  // namespace
 
 TextLayout text_layout(const ByteSource& source, const TextStart& start, FileInfo& info) {
@@ -130,7 +139,7 @@ TextLayout text_layout(const ByteSource& source, const TextStart& start, FileInf
     assign_by_names(*names, layout, info);
     return layout;
   }
-  layout.color = find_unnamed_colors(table, is_pts(source), info);
+  assign_by_numbers(source, table, layout, info);
   return layout;
 }
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 
 #include "io/ascii_rows.hpp"
 #include "io/format_readers.hpp"
@@ -44,18 +45,25 @@ class TextParser {
   /// False for a line that holds one number alone: the count of another block of points.
   bool parse(std::string_view line, std::uint64_t number, RowStage::Row& row) {
     split_row(line, format_.separator, columns_);
+    // A separator at the end ends the last column, unless that is the empty one behind it.
+    if (columns_.size() + 1 == layout_.columns && columns_.back().empty()) columns_.emplace_back();
     if (columns_.size() == 1 && layout_.columns > 1) return false;
     if (columns_.size() != layout_.columns) {
       source_.fail("line {}: {} columns where {} were expected", number, columns_.size(), layout_.columns);
     }
     for (std::size_t k = 0; k < 3; ++k) row.xyz[k] = value_of(layout_.position[k], number);
     if (layout_.color) {
-      for (std::size_t k = 0; k < 3; ++k) row.rgb[k] = value_of((*layout_.color)[k], number);
+      for (std::size_t k = 0; k < 3; ++k) row.rgb[k] = color_of((*layout_.color)[k], number);
     }
     return true;
   }
 
  private:
+  /// pandas writes a color that is none as empty cells.
+  double color_of(std::size_t column, std::uint64_t number) const {
+    return columns_[column].empty() ? std::numeric_limits<double>::quiet_NaN() : value_of(column, number);
+  }
+
   double value_of(std::size_t column, std::uint64_t number) const {
     double value = 0.0;
     if (!parse_column(columns_[column], format_, value)) {

@@ -34,7 +34,7 @@ TextStart read_text_start(LineReader& lines);
 /// The numbers of the first rows, as many columns as the first has; what is no number, or not there, is NaN.
 NumberTable number_table(const TextStart& start);
 
-/// Whether a line holds nothing, or a comment (# or //).
+/// Whether a line holds nothing, or a comment (#, //, %, ! or a lone ;).
 bool is_blank_line(std::string_view line);
 bool is_comment_line(std::string_view line);
 

@@ -61,6 +61,7 @@ TrajectoryFile finish(TrajectoryRows rows, const std::string& name) {
     file.warnings.push_back({"trajectory_decimal_comma", name + ": commas are read as decimal ones"});
   }
   file.poses = std::move(rows.poses);
+  warn_of_zero_poses(file.poses, name, file.warnings);
   if (!file.has_times) return file;
   const double units_per_s = times_to_seconds(file.poses, rows.units_per_s, name, file.warnings);
   if (rows.assumed_order && units_per_s == 1e9) {

@@ -60,6 +60,20 @@ double times_to_seconds(Trajectory& poses, double units_per_s, const std::string
   return units_per_s;
 }
 
+void warn_of_zero_poses(const Trajectory& poses, const std::string& name, std::vector<Warning>& warnings) {
+  constexpr double kNoRotation = 1.0 - 1e-12;
+  const auto is_zero = [](const StampedPose& pose) {
+    return pose.position == Eigen::Vector3d::Zero() && std::abs(pose.rotation.w()) >= kNoRotation;
+  };
+  const auto n = std::count_if(std::find_if_not(poses.begin(), poses.end(), is_zero), poses.end(), is_zero);
+  if (n < 2) return;
+  warnings.push_back(
+      {"trajectory_zero_poses",
+       fmt::format("{}: {} of {} poses are exactly 0 0 0 without rotation, after others that are not: lost "
+                   "tracking? They count as poses",
+                   name, n, poses.size())});
+}
+
 void put_in_order(Trajectory& poses, const std::string& name, std::vector<Warning>& warnings) {
   const auto earlier = [](const StampedPose& a, const StampedPose& b) { return a.time_s < b.time_s; };
   std::size_t n_late = 0;

@@ -13,6 +13,10 @@ namespace cmap {
 /// between two poses. Returns the units a second that were taken.
 double times_to_seconds(Trajectory& poses, double units_per_s, const std::string& name, std::vector<Warning>& warnings);
 
+/// Warns of poses exactly at 0 0 0 without rotation between others, in the file's order: what programs write where
+/// tracking was lost. Those before the first other pose are a start, and one alone may be a return.
+void warn_of_zero_poses(const Trajectory& poses, const std::string& name, std::vector<Warning>& warnings);
+
 /// Sorts poses by time and leaves out all but the first of each time, with warnings. The result is a Trajectory.
 void put_in_order(Trajectory& poses, const std::string& name, std::vector<Warning>& warnings);
 

@@ -80,6 +80,21 @@ bool is_column_major(const FoundMatrix& matrix) {
   return matrix.numbers.rows.size() == 1 && (matrix.place.ends_with("extrinsic") || matrix.place.ends_with("elements"));
 }
 
+/// Refuses a matrix whose name says that it maps the other way.
+void require_direction(const FoundMatrix& matrix, const Json& json) {
+  const std::string name = matrix.place.substr(matrix.place.rfind('.') + 1);
+  if (!names_reference_to_estimate(name)) return;
+  const bool is_simple = name == matrix.place && json.is_object() && matrix.numbers.rows.size() == 4;
+  throw UsageError(fmt::format(
+      "the name '{}' says that the matrix maps the reference to the estimate, but it is the estimate that moves: give "
+      "its inverse{}",
+      matrix.place,
+      is_simple ? fmt::format(" (python3 -c \"import json, numpy; numpy.savetxt('T_ref_est.txt', "
+                              "numpy.linalg.inv(json.load(open('FILE'))['{}']))\" writes it)",
+                              name)
+                : " (numpy.linalg.inv)"));
+}
+
 TransformNumbers only_matrix(const Json& json) {
   if (json.is_object() && json.contains("T")) {
     if (auto numbers = as_matrix(json["T"])) return *numbers;
@@ -98,6 +113,7 @@ TransformNumbers only_matrix(const Json& json) {
     throw UsageError(fmt::format("the JSON holds {} matrices ('{}', '{}'); keep one, or name one of them 'T'",
                                  found.size(), found[0].place, found[1].place));
   }
+  require_direction(found.front(), json);
   found.front().numbers.column_major = is_column_major(found.front());
   return std::move(found.front().numbers);
 }

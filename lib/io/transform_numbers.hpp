@@ -25,6 +25,10 @@ TransformNumbers transform_from_json(const ByteSource& source, const std::string
 /// From a NumPy array of shape (4, 4), (3, 4), (16,) or (12,), also as the only one of a batch.
 TransformNumbers transform_from_npy(ByteSource& source);
 
+/// Whether a name clearly says that a matrix maps the reference to the estimate ("T_est_ref", "ref_to_est"), and so not
+/// as every transform here does, the estimate to the reference.
+bool names_reference_to_estimate(std::string_view name);
+
 /// The transform of a whole source (see read_transform).
 TransformFile parse_transform(ByteSource& source);
 

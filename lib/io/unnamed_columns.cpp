@@ -7,6 +7,8 @@
 #include <limits>
 #include <string_view>
 
+#include "io/color_store.hpp"
+
 namespace cmap {
 namespace {
 
@@ -55,6 +57,10 @@ Channel measure_channel(const NumberTable& table, std::size_t column) {
 void compare_channels(const NumberTable& table, std::size_t first, ColumnStatistics& triple) {
   constexpr std::size_t kFewRows = 8;
   constexpr double kWhite8 = 255.0;
+  // Fractions may overshoot white.
+  const auto is_small = [&](const Channel& channel) {
+    return channel.highest <= (channel.fractions ? kColorOvershoot * kWhite8 : kWhite8);
+  };
   if (table.rows() < kFewRows) return;
   bool any_fractions = false, any_whole = false, any_small = false, any_large = false;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -62,8 +68,8 @@ void compare_channels(const NumberTable& table, std::size_t first, ColumnStatist
     if (channel.is_constant()) continue;
     any_fractions = any_fractions || channel.fractions;
     any_whole = any_whole || (!channel.fractions && channel.highest > 1.0);
-    any_small = any_small || channel.highest <= kWhite8;
-    any_large = any_large || channel.highest > kWhite8;
+    any_small = any_small || is_small(channel);
+    any_large = any_large || !is_small(channel);
   }
   triple.alike = !(any_fractions && any_whole);
   triple.one_scale = !(any_small && any_large);
@@ -91,7 +97,8 @@ ColumnStatistics measure(const NumberTable& table, std::size_t first) {
 
 bool may_be_color(const ColumnStatistics& t) {
   constexpr double kHighestColor = 65535.0;
-  if (t.lowest < 0.0 || t.highest > kHighestColor || t.highest == 0.0) return false;
+  const double highest = t.fractions ? kColorOvershoot * kHighestColor : kHighestColor;
+  if (t.lowest < 0.0 || t.highest > highest || t.highest == 0.0) return false;
   return t.alike && !(t.unit_or_zero && t.fractions);  // colors would not all have length 1
 }
 
@@ -132,20 +139,22 @@ std::size_t place_of_color(std::string_view layout) {
   return at == std::string_view::npos ? 0 : 3 + width_of(layout.substr(0, at));
 }
 
-std::string column_range(std::size_t first, std::size_t last) {
+std::string column_range(const NumberTable& table, std::size_t first, std::size_t last) {
+  first += table.n_before;
+  last += table.n_before;
   return first == last ? fmt::format("column {}", first) : fmt::format("columns {} to {}", first, last);
 }
 
 void note_ignored(const NumberTable& table, FileInfo& info) {
   const bool one = table.columns == 4;
   info.notes.push_back(fmt::format("{} ignored; names such as 'x y z r g b' would say what {}",
-                                   column_range(4, table.columns), one ? "it holds" : "they hold"));
+                                   column_range(table, 4, table.columns), one ? "it holds" : "they hold"));
 }
 
 void note_others(const NumberTable& table, std::size_t color, FileInfo& info) {
   std::vector<std::string> unused;
-  if (color > 3) unused.push_back(column_range(4, color));
-  if (color + 3 < table.columns) unused.push_back(column_range(color + 4, table.columns));
+  if (color > 3) unused.push_back(column_range(table, 4, color));
+  if (color + 3 < table.columns) unused.push_back(column_range(table, color + 4, table.columns));
   for (const std::string& columns : unused) info.notes.push_back(columns + " not used");
 }
 
@@ -169,19 +178,42 @@ std::optional<ColumnTriple> find_unnamed_colors(const NumberTable& table, bool i
         {"undecidable_columns",
          fmt::format("no color taken: {} can be read in more than one way (colors, normals, intensity); "
                      "names such as 'x y z r g b' would say which they are",
-                     column_range(4, table.columns))});
+                     column_range(table, 4, table.columns))});
     return std::nullopt;
   }
   const std::size_t color = place_of_color(fitting[0]);
   if (color == 0) {
     info.notes.push_back(fmt::format(
-        "no color: {} taken as a normal{}", column_range(4, table.columns),
+        "no color: {} taken as a normal{}", column_range(table, 4, table.columns),
         measure(table, 3).highest == 0.0 && measure(table, 3).lowest == 0.0 ? " that is zero throughout" : ""));
     return std::nullopt;
   }
-  info.notes.push_back(fmt::format("columns {} to {} taken as red, green and blue", color + 1, color + 3));
+  info.notes.push_back(fmt::format("{} taken as red, green and blue", column_range(table, color + 1, color + 3)));
   note_others(table, color, info);
   return ColumnTriple{color, color + 1, color + 2};
+}
+
+RowNumbers find_row_numbers(const NumberTable& table) {
+  constexpr std::size_t kFewest = 8, kColorsOrNormals = 6;
+  if (table.columns < 4 || table.rows() < kFewest) return RowNumbers::kNone;
+  const double first = table.at(0, 0);
+  if (first != 0.0 && first != 1.0) return RowNumbers::kNone;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    if (table.at(row, 0) != first + table.row_step * static_cast<double>(row)) return RowNumbers::kNone;
+  }
+  // Coordinates do not stand still in a map; those of one line of a raster do.
+  if (measure_channel(table, 1).is_constant() || measure_channel(table, 2).is_constant()) return RowNumbers::kNone;
+  if (table.columns == kColorsOrNormals && (fits(table, "r") || fits(table, "n"))) return RowNumbers::kNone;
+  const auto has_fractions = [&](std::size_t column) { return measure_channel(table, column).fractions; };
+  return has_fractions(1) && has_fractions(2) && has_fractions(3) ? RowNumbers::kCertain : RowNumbers::kUndecidable;
+}
+
+NumberTable without_first_column(const NumberTable& table) {
+  NumberTable rest{table.columns - 1, {}, table.row_step, table.n_before + 1};
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    for (std::size_t column = 1; column < table.columns; ++column) rest.values.push_back(table.at(row, column));
+  }
+  return rest;
 }
 
 }  // namespace cmap

@@ -13,13 +13,10 @@ namespace cmap {
 namespace fs = std::filesystem;
 namespace {
 
-/// What is there, and what is needed whether it is there or not.
-CaptureParts parts_to_check(const fs::path& folder, const ReconstructionOptions& options, Stage last) {
-  const CaptureParts needed = parts_needed(options, last);
-  const auto want = [&](const char* table, Want need) {
-    return need == Want::kYes || fs::exists(folder / table) ? Want::kYes : Want::kNo;
-  };
-  return {.images = want("images.csv", needed.images), .scans = want("lidar.csv", needed.scans), .imu = Want::kYes};
+/// What a run reads, and all else that is there.
+CaptureParts parts_to_check(const CaptureParts& needed) {
+  const auto want = [](Want need) { return need == Want::kYes ? Want::kYes : Want::kIfUsable; };
+  return {.images = want(needed.images), .scans = want(needed.scans), .imu = want(needed.imu)};
 }
 
 void check_needed(const Capture& capture, CaptureCheck& check) {
@@ -30,23 +27,23 @@ void check_needed(const Capture& capture, CaptureCheck& check) {
   check.faults.push_back(predictions + ": no sessions of predictions: folders, or NAME.npz with NAME.frames.csv");
 }
 
-/// The scans that have a pose at their time.
-void check_scan_times(const Capture& capture, double max_gap_s, CaptureCheck& check) {
+/// The scans that have a pose at their time. That none has one ends a run only where it needs them.
+void check_scan_times(const Capture& capture, double max_gap_s, bool needed, CaptureCheck& check) {
   const std::vector<StampedFile>& scans = capture.scans;
   const Trajectory& poses = capture.lio;
   if (scans.empty() || poses.empty()) return;
   const auto n_missing = std::ranges::count_if(
       scans, [&](const StampedFile& scan) { return !pose_at(poses, scan.time_s, max_gap_s).has_value(); });
   if (n_missing == 0) return;
-  const bool is_any = n_missing < std::ssize(scans);
-  (is_any ? check.warnings : check.faults)
+  const bool is_fault = needed && n_missing == std::ssize(scans);
+  (is_fault ? check.faults : check.warnings)
       .push_back(fmt::format("{}: {} of {} scans have no LiDAR-inertial pose at their time: {} (max_gap_s)",
                              (capture.folder / "lidar.csv").string(), n_missing, scans.size(),
                              times_of_scans_and_poses(capture, max_gap_s)));
 }
 
-void check_scans(const Capture& capture, const ProgressSink& progress, CaptureCheck& check) {
-  const Faults faults(check.faults);
+void check_scans(const Capture& capture, const ProgressSink& progress, std::vector<std::string>& list) {
+  const Faults faults(list);
   std::size_t n_read = 0, n_points = 0, i = 0;
   for (const StampedFile& file : capture.scans) {
     if (progress) progress("scans", static_cast<double>(i++) / static_cast<double>(capture.scans.size()));
@@ -56,8 +53,7 @@ void check_scans(const Capture& capture, const ProgressSink& progress, CaptureCh
     });
   }
   if (n_read == 0 || n_points > 0) return;
-  check.faults.push_back(
-      fmt::format("{}: none of the {} scans has a point", (capture.folder / "lidar.csv").string(), n_read));
+  list.push_back(fmt::format("{}: none of the {} scans has a point", (capture.folder / "lidar.csv").string(), n_read));
 }
 
 }  // namespace
@@ -67,7 +63,8 @@ CaptureCheck check_capture(const fs::path& folder, const ReconstructionOptions& 
   CaptureCheck check;
   const Faults faults(check.faults);
   Capture capture;
-  faults.attempt([&] { capture = open_capture(folder, parts_to_check(folder, options, last), faults); });
+  const CaptureParts needed = parts_needed(options, last);
+  faults.attempt([&] { capture = open_capture(folder, parts_to_check(needed), faults); });
   if (capture.folder.empty()) return check;
   for (const Warning& warning : capture.warnings) check.warnings.push_back(warning.message);
   check_needed(capture, check);
@@ -76,8 +73,9 @@ CaptureCheck check_capture(const fs::path& folder, const ReconstructionOptions& 
     if (progress) progress("sessions", static_cast<double>(i) / static_cast<double>(capture.sessions.size()));
     sessions.add(i);
   }
-  check_scan_times(capture, options.prefusion.max_gap_s, check);
-  check_scans(capture, progress, check);
+  const bool needs_scans = needed.scans == Want::kYes;
+  check_scan_times(capture, options.prefusion.max_gap_s, needs_scans, check);
+  check_scans(capture, progress, needs_scans ? check.faults : check.warnings);
   check.summary = fmt::format("{} sessions of {} frames, {} poses, {} scans, {} pictures", capture.sessions.size(),
                               sessions.frames(), capture.lio.size(), capture.scans.size(), capture.images.size());
   return check;

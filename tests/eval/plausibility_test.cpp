@@ -124,6 +124,15 @@ TEST(CoarseStep, IsNoneOfARaster) {
   EXPECT_FALSE(coarse_step(map_of(whole_meters), kMillimeter));
 }
 
+/// Half a meter is the step of float32 at 5.4e6 m, but not at 5e5 m: a LAS file of that scale.
+TEST(CoarseStep, OfAScaleThatLooksLikeFloats) {
+  const auto halves = [](double x) { return std::round(2.0 * x) / 2.0; };
+  const auto step = coarse_step(random_map(1000, kUtm, halves), kMillimeter);
+  ASSERT_TRUE(step);
+  EXPECT_EQ(step->step_m, 0.5);
+  EXPECT_EQ(step->cause, Cause::kGrid);
+}
+
 TEST(CoarseStep, OfAMapTooWideForItsOffsets) {
   const auto step = coarse_step(random_map(1000, {{-20000, 0, 0}, {20000, 1000, 50}}, as_double), kMillimeter);
   ASSERT_TRUE(step);
@@ -261,6 +270,15 @@ TEST(Steps, AreSaidUnlessTheyAreARasters) {
     raster.emplace_back(500000 + i % 20, 5400000 + i / 20, 300 + std::sin(i));
     rounded.emplace_back(500000 + std::round(i % 20 * 2.5) / 10, 5400000 + i / 40, 300 + std::sin(i));
   }
+  std::vector<Eigen::Vector3d> half_meters, scale;
+  for (int i = 0; i < 400; ++i) {
+    half_meters.emplace_back(500000 + 0.5 * (i % 20), 5400000 + 0.5 * (i / 20),
+                             300 + std::round(100 * std::sin(i)) / 100);
+    scale.emplace_back(500000 + 0.5 * (i % 10), 5400000 + 0.5 * (i / 10 % 10), 300 + 0.5 * (i / 200));
+  }
+  EXPECT_THAT(messages(half_meters), ::testing::SizeIs(0)) << "at 5.4e6 m, float32 has steps of 0.5 m too";
+  EXPECT_THAT(messages(scale),
+              Contains(HasSubstr("comes in steps of 0.5 m, those of a raster or of the file's own scale")));
   EXPECT_THAT(messages(raster), ::testing::SizeIs(0));
   EXPECT_THAT(messages(rounded), Contains(HasSubstr("the estimate's y comes in steps of 1 m, as if rounded")));
 }

@@ -143,6 +143,52 @@ TEST(LineReader, TakesEveryLineEnd) {
   EXPECT_EQ(seen, (std::vector<std::string>{"a", "", "b", "c"}));
 }
 
+std::vector<std::string> lines_of(std::string_view text) {
+  ByteSource source("mem", bytes_of(text));
+  LineReader lines(source);
+  std::vector<std::string> seen;
+  for (std::string_view line; lines.next(line);) seen.emplace_back(line);
+  return seen;
+}
+
+TEST(LineReader, TakesLineEndsThatAreMixed) {
+  using Lines = std::vector<std::string>;
+  for (const char* text : {"a\r\nb\rc\nd", "a\nb\rc\r\nd\r\n", "a\rb\nc\r\nd\n", "a\rb\r\nc\rd\r", "a\r\nb\nc\rd"}) {
+    EXPECT_EQ(lines_of(text), (Lines{"a", "b", "c", "d"})) << text;
+  }
+  EXPECT_EQ(lines_of("a\r\rb\n\nc\r\n\r\nd"), (Lines{"a", "", "b", "", "c", "", "d"}));
+  EXPECT_EQ(lines_of("a\r\r\nb\r\r\nc"), (Lines{"a", "", "b", "", "c"})) << "text mode on Windows";
+  EXPECT_EQ(lines_of("\r"), Lines{""});
+}
+
+/// Long runs of each kind, so that blocks end within and between ends of every kind.
+TEST(LineReader, TakesMixedLineEndsAcrossBlocks) {
+  const std::string_view ends[] = {"\n", "\r\n", "\r"};
+  std::string text;
+  std::vector<std::string> expected;
+  for (std::size_t i = 0; text.size() < 3 * ByteSource::kMaxRecordBytes; ++i) {
+    expected.push_back(std::string(1 + i * 7 % 60, 'x'));
+    text += expected.back();
+    text += ends[i / 997 % 3];
+  }
+  EXPECT_EQ(lines_of(text), expected);
+}
+
+/// What follows a header may begin with a byte that looks like the rest of its line end.
+TEST(LineReader, LeavesDataBehindALoneCr) {
+  for (const auto& [text, left] : {std::pair{"a\rb\r\ndata", "\ndata"},
+                                   {"a\nb\n\rdata", "\rdata"},
+                                   {"a\r\nb\r\ndata", "data"},
+                                   {"a\r\nb\r\n\ndata", "\ndata"}}) {
+    ByteSource source("mem", bytes_of(text));
+    LineReader lines(source);
+    std::string_view line;
+    ASSERT_TRUE(lines.next(line) && lines.next(line));
+    EXPECT_EQ(line, "b");
+    EXPECT_EQ(source.remaining(), std::string_view(left).size()) << text;
+  }
+}
+
 TEST(LineReader, RefusesEndlessLines) {
   const std::string text(ByteSource::kMaxRecordBytes + 10, 'x');
   ByteSource source("mem", bytes_of(text));

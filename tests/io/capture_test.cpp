@@ -343,6 +343,23 @@ TEST(Capture, PartsThatAreWantedIfUsable) {
   EXPECT_THAT(capture.warnings[0].message, HasSubstr("lidar/a.pcd is no file; the run goes on without"));
 }
 
+/// With a list of faults, those of such parts are warnings, and what could be read stays.
+TEST(Capture, FaultsOfPartsThatAreNotNeededAreWarnings) {
+  CaptureText text;
+  text.files["images.csv"] += "7,images/missing.jpg\n8,images/gone.jpg\n";
+  text.files["imu.csv"] += "nan,0,0,0,0,0,0\n";
+  const TempFolder folder;
+  text.write_to(folder.path());
+  std::vector<std::string> list;
+  const CaptureParts parts{.images = Want::kIfUsable, .imu = Want::kIfUsable};
+  const Capture capture = open_capture(folder.path(), parts, Faults(list));
+  EXPECT_TRUE(list.empty()) << ::testing::PrintToString(list);
+  EXPECT_EQ(capture.images.size(), 2U);
+  ASSERT_EQ(capture.warnings.size(), 3U);
+  EXPECT_THAT(capture.warnings[0].message, HasSubstr("images/missing.jpg is no file; the run goes on without"));
+  EXPECT_THAT(capture.warnings[2].message, HasSubstr("imu.csv"));
+}
+
 /// All that is wrong at once, and the rest is read.
 TEST(Capture, EveryFaultIsListed) {
   CaptureText text;

@@ -34,11 +34,30 @@ TEST(NotACloud, Transforms) {
   EXPECT_THAT(what({{2, 0, 0, 5}, {0, 2, 0, 6}, {0, 0, 2, 7}, {0, 0, 0, 1}}), HasSubstr("4x4 matrix"));
 }
 
+TEST(NotACloud, ComputedTransformsAreAMillionthOff) {
+  Rows rounded = kTransform;
+  rounded[3] = {1e-17, -9e-7, 0, 0.9999995};
+  EXPECT_THAT(what(rounded), HasSubstr("4x4 matrix"));
+  rounded[3][3] = 1.00001;
+  EXPECT_EQ(what(rounded), kMayBePoints);
+  // Of a mirrored map.
+  EXPECT_THAT(what({{-1, 0, 0, 5}, {0, 1, 0, 6}, {0, 0, 1, 7}, {0, 0, 0, 1}}), HasSubstr("4x4 matrix"));
+}
+
+TEST(NotACloud, RotationsAndCameras) {
+  const Rows rotation{{kCos, -kSin, 0}, {kSin, kCos, 0}, {0, 0, 1}};
+  EXPECT_THAT(what(rotation), HasSubstr("3x3 rotation or camera matrix"));
+  EXPECT_THAT(what({{700, 0.5, 320}, {0, 710, 240}, {0, 0, 1}}), HasSubstr("3x3 rotation or camera matrix"));
+  EXPECT_EQ(what(rotation, false), kMayBePoints) << "more rows follow";
+  EXPECT_EQ(what({{700, 0, 320}, {1, 700, 240}, {0, 0, 1}}), kMayBePoints);
+  EXPECT_EQ(what({{700, 0, 320}, {0, 700, 240}, {0, 0, 2}}), kMayBePoints);
+}
+
 TEST(NotACloud, FourPointsAreNoTransform) {
   EXPECT_EQ(what({{1, 2, 3, 0.5}, {4, 5, 6, 0.5}, {7, 8, 9, 0.5}, {1, 1, 2, 0.5}}), kMayBePoints);
   EXPECT_EQ(what({{1, 2, 3, 0}, {4, 5, 6, 0}, {7, 8, 9, 0}, {1, 1, 2, 1}}), kMayBePoints);
   EXPECT_EQ(what({{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, {0, 0, 1}}), kMayBePoints);
-  EXPECT_EQ(what({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}), kMayBePoints);
+  EXPECT_EQ(what({{1, 2, 3, 7}, {4, 5, 6, 8}, {7, 8, 9, 9}, {0, 0, 0, 1}}), kMayBePoints);
   Rows five = kTransform;
   five.push_back({1, 2, 3, 4});
   EXPECT_EQ(what({five[0], five[1], five[2], five[4]}), kMayBePoints);
@@ -86,7 +105,14 @@ TEST(NotACloud, TransposedClouds) {
   EXPECT_THAT(what({row, row, row}), HasSubstr("3 rows of 60 numbers: a transposed cloud"));
   EXPECT_THAT(what({row, row, row, row, row, row}), HasSubstr("6 rows of 60"));
   EXPECT_EQ(what({row, row, row}, false), kMayBePoints) << "more rows follow";
-  EXPECT_EQ(what({row, row}), kMayBePoints);
+  EXPECT_THAT(what({row, row}), HasSubstr("2 rows of 60"));
+  EXPECT_THAT(what({row}), HasSubstr("1 row of 60"));
+  EXPECT_THAT(what(Rows(8, row)), HasSubstr("8 rows of 60 numbers: a transposed cloud, or several things"));
+  EXPECT_THAT(what(Rows(6, std::vector<double>(18, 1.5))), HasSubstr("6 rows of 18"));
+  EXPECT_THAT(what(Rows(3, std::vector<double>(5, 1.5))), HasSubstr("3 rows of 5"));
+  EXPECT_EQ(what(Rows(60, row)), kMayBePoints) << "not fewer rows than columns";
+  EXPECT_EQ(what(Rows(8, std::vector<double>(12, 1.5))), kMayBePoints) << "as many columns as points may have";
+  EXPECT_EQ(what(Rows(4, std::vector<double>(5, 1.5))), kMayBePoints);
   EXPECT_EQ(what({row, row, std::vector<double>(59, 1.5)}), kMayBePoints);
   const std::vector<double> point(6, 1.5);
   EXPECT_EQ(what({point, point, point}), kMayBePoints);
@@ -109,6 +135,16 @@ TEST(NotACloud, GivenAsMapsTheyAreRefused) {
               HasSubstr("TUM"));
   EXPECT_THAT(refusal("a.csv", "time,x,y,z,qx,qy,qz,qw\n1,2,3,4,0,0,0,1\n"), HasSubstr("TUM"));
   EXPECT_THAT(refusal("a.csv", "1,2,3,4,5,6,7\n1,2,3,4,5,6,7\n1,2,3,4,5,6,7\n"), HasSubstr("3 rows of 7 numbers"));
+  EXPECT_THAT(refusal("T.txt", "0.8 -0.6 0\n0.6 0.8 0\n0 0 1\n"), HasSubstr("3x3 rotation"));
+  for (const char* printed :
+       {"[[0.8, -0.6, 0, 1.5], [0.6, 0.8, 0, -0.25], [0, 0, 1, 0.125], [1e-17, 0, 0, 1]]",
+        "[[0.8 -0.6 0. 1.5]\n [0.6 0.8 0. -0.25]\n [0. 0. 1. 0.125]\n [0. 0. 0. 1.]]\n",
+        "{\"T\": [[0.8, -0.6, 0, 1.5], [0.6, 0.8, 0, -0.25], [0, 0, 1, 0.125]]}",
+        "array([[0.8, -0.6, 0., 1.5],\n [0.6, 0.8, 0., -0.25],\n [0., 0., 1., 0.125],\n [0., 0., 0., 1.]])"}) {
+    EXPECT_THAT(refusal("T.txt", printed), HasSubstr("a transform, and no point cloud; --transform takes it"))
+        << printed;
+  }
+  EXPECT_EQ(refusal("a.txt", "1 2 3 0.5\n2 2 3 0.7\n4 1 0 0.2\n0 0 0 1\n"), "") << "four points";
   EXPECT_EQ(refusal("a.csv", "x,y,z,i\n1,2,3,0\n4,5,6,0\n7,8,9,0\n0,0,0,1\n"), "") << "named columns are points";
 }
 

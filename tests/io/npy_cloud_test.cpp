@@ -95,9 +95,22 @@ TEST(NpyCloud, MatricesAndPosesAreNamed) {
   EXPECT_THAT(refused("'<f8'", "(1, 16)", T), HasSubstr("rows of 16 numbers, as trajectories"));
   // Three points, and four of x y z and one more, are points.
   EXPECT_EQ(read("'<f4'", "(3, 3)", point_bytes<float>(3)).cloud.size(), 3U);
+  EXPECT_EQ(read("'<f8'", "(4, 4)", raw<double>({1, 2, 3, 7, 4, 5, 6, 8, 7, 8, 9, 9, 0, 0, 0, 1})).cloud.size(), 4U);
   EXPECT_EQ(read("'<f4'", "(4, 4)", rows_with<float>({{7}, {8}, {9}, {1}})).cloud.size(), 4U);
   // Triangles: three corners each.
   expect_samples(read("'<f4'", "(4, 3, 3)", point_bytes<float>(12)), 12, false);
+}
+
+TEST(NpyCloud, NumbersOfRowsAreNoX) {
+  std::vector<double> rows;
+  for (int i = 0; i < 10; ++i) {
+    const double t = i;
+    rows.insert(rows.end(), {t, 0.5 + t, 0.25 * t * t, 1.125 - t, 20 * t, 255 - t, t * t});
+  }
+  const auto file = read("'<f8'", "(10, 7)", raw(rows));
+  EXPECT_EQ(point(file, 3), Eigen::Vector3d(3.5, 2.25, -1.875));
+  EXPECT_EQ(std::get<Array<Rgb8>>(file.cloud.colors)[3], (Rgb8{60, 252, 9}));
+  EXPECT_THAT(all_notes(file), HasSubstr("column 0 numbers the rows"));
 }
 
 TEST(NpyCloud, TrajectoriesAreNamed) {

@@ -62,6 +62,53 @@ TEST(PcdReader, BinaryWithPackedColor) {
   }
 }
 
+std::string warning_of(const PointCloudFile& file) {
+  EXPECT_EQ(file.info.warnings.size(), 1U);
+  return file.info.warnings.empty() ? "" : file.info.warnings[0].message;
+}
+
+/// 13132850 is 0x00c86432, the color 200 100 50; as the value of a float, and not its bits, it has lost digits.
+TEST(PcdReader, PackedColorsWhoseValueIsTheInteger) {
+  for (const char* number : {"1.313285e+07", "4.291351e+09", "4.291350580000000000e+09", "4291350528.0"}) {
+    const auto file = read_content("a.pcd", with_points(kPacked, 2).str() + "1 2 3 " + number + "\n4 5 6 0\n");
+    EXPECT_FALSE(file.cloud.has_color()) << number;
+    EXPECT_THAT(warning_of(file), HasSubstr("no color: 1 packed colors are floats whose value is the packed integer"));
+  }
+  const auto exact = read_content("a.pcd", with_points(kPacked, 1).str() + "1 2 3 13132850.000000\n");
+  EXPECT_EQ(exact.cloud.colors, Colors(Array<Rgb8>{{200, 100, 50}})) << "below 2^24 no digit is lost";
+  const auto binary =
+      read_content("b.pcd", Bytes(with_data(kPacked, "binary").str()).put(1.0F, 2.0F, 3.0F, 13132850.0F).str());
+  EXPECT_FALSE(binary.cloud.has_color());
+  EXPECT_THAT(warning_of(binary), HasSubstr("1.31328e+07"));
+}
+
+/// With an opacity of 255 the integers are beyond 2^31, where floats come in steps of 256: no blue is left.
+TEST(PcdReader, PackedIntegersThatHaveBeenFloats) {
+  std::string rows;
+  for (unsigned i = 0; i < 20; ++i) {
+    rows += std::to_string(i) + " 2 3 " + std::to_string(0xff000000U + 0x010100U * i) + "\n";
+  }
+  const auto file = read_content("a.pcd", with_points(kPacked, 20).str() + rows);
+  EXPECT_FALSE(file.cloud.has_color());
+  EXPECT_THAT(warning_of(file), HasSubstr("multiples of 256"));
+  EXPECT_TRUE(
+      read_content("a.pcd", with_points(kPacked, 19).str() + rows.substr(0, rows.rfind("19 2"))).cloud.has_color());
+}
+
+/// The bits of 255 128 64, 0x00ff8040, are those of 2.3464059e-38; six digits leave 0x00ff805d.
+TEST(PcdReader, PackedColorsPrintedWithFewDigits) {
+  const auto six = read_content("a.pcd", with_points(kPacked, 1).str() + "1 2 3 2.34641e-38\n");
+  EXPECT_EQ(six.cloud.colors, Colors(Array<Rgb8>{{255, 128, 0x5d}}));
+  EXPECT_THAT(warning_of(six),
+              HasSubstr("1 of 1 packed colors are printed with too few digits (2.34641e-38): blue may be "
+                        "off by 36 of 255"));
+  for (const char* number : {"2.34640591e-38", "2.3464059e-38"}) {
+    const auto file = read_content("a.pcd", with_points(kPacked, 1).str() + "1 2 3 " + number + "\n");
+    EXPECT_EQ(file.cloud.colors, Colors(Array<Rgb8>{{255, 128, 64}})) << number;
+    EXPECT_TRUE(file.info.warnings.empty()) << number;
+  }
+}
+
 TEST(PcdReader, AsciiPackedColorAsIntegerAndAsFloat) {
   Header header = with_points(kPacked, 4);
   const Colors expected(Array<Rgb8>{{10, 20, 30}, {10, 20, 30}, {10, 20, 30}, {0, 0, 0}});

@@ -21,6 +21,16 @@ TEST(TextReader, EverySeparator) {
   }
 }
 
+TEST(TextReader, LineEndsMayBeMixed) {
+  for (const char* text :
+       {"# made by me\r\n1 2 3\r4 5 6\r", "# made by me\n1 2 3\r4 5 6", "# made by me\r1 2 3\n4 5 6\n",
+        "# made by me\r1 2 3\r\n4 5 6\r\n", "1 2 3\r\r\n4 5 6\r\r\n"}) {
+    const auto file = read_content("a.xyz", text);
+    ASSERT_EQ(file.info.points, 2U) << text;
+    EXPECT_EQ(point(file, 1), Eigen::Vector3d(4, 5, 6)) << text;
+  }
+}
+
 TEST(TextReader, ColorsAboveOneAreEightBit) {
   const auto file = read_content("a.txt", "# x y z\n1 2 3 0 1 1\n4 5 6 255 128 0\n");
   EXPECT_EQ(file.cloud.colors, Colors(Array<Rgb8>{{0, 1, 1}, {255, 128, 0}}));
@@ -89,6 +99,115 @@ TEST(TextReader, DecimalCommas) {
     ASSERT_EQ(file.cloud.size(), 2U) << text;
     EXPECT_EQ(point(file, 0), Eigen::Vector3d(1.5, 2, -3.25)) << text;
     EXPECT_THAT(all_notes(file), HasSubstr("decimal"));
+  }
+}
+
+TEST(TextReader, QuotedNumbers) {
+  for (const char* text : {"\"1,5\",\"2,5\",\"-3,25\"\n\"4\",\"5,0\",6\n", "x,y,z\n\"1,5\",\"2,5\",\"-3,25\"\n4,5,6\n",
+                           "\"x\",\"y\",\"z\"\n\"1,5\" , \"2,5\" , \"-3,25\"\n4,5,6\n", "'1,5','2,5','-3,25'\n4,5,6\n",
+                           "\"1.5\",\"2.5\",\"-3.25\"\n\"4\",\"5\",\"6\"\n", "\"1.5\" \"2.5\" \"-3.25\"\n4 5 6\n",
+                           "\"1,5\";\"2,5\";\"-3,25\"\n4;5;6\n"}) {
+    const auto file = read_content("a.csv", text);
+    ASSERT_EQ(file.cloud.size(), 2U) << text;
+    EXPECT_EQ(point(file, 0), Eigen::Vector3d(1.5, 2.5, -3.25)) << text;
+    EXPECT_EQ(point(file, 1), Eigen::Vector3d(4, 5, 6)) << text;
+  }
+  EXPECT_THAT(refusal("a.csv", "\"1,5\",2.5,3\n"), HasSubstr("line 1: commas between quotes beside decimal points"));
+  const auto named = read_content("a.csv", "\"label, free\",x,y,z\n\"a, b\",1,2,3\n");
+  EXPECT_EQ(point(named, 0), Eigen::Vector3d(1, 2, 3)) << "commas between quotes are of the name";
+}
+
+/// 1,5, 2,5, 3,5: three numbers or six columns.
+TEST(TextReader, DecimalCommasBetweenCommasAreRefused) {
+  for (const char* text : {"1,5, 2,5, 3,5\n4,5, 5,5, 6,5\n", "1,5 ,2,5 ,3,5\n", "0,5, 2, 3,25, 255, 0, 12\n"}) {
+    EXPECT_THAT(refusal("a.csv", text),
+                HasSubstr("line 1: some commas have blanks beside them and others not; decimal"))
+        << text;
+  }
+  for (const char* text : {"1,5,2,05,3,5\n4,5,5,5,6,5\n", "-1,5,2,5,3,5\n4,00,-5,5,6,5\n"}) {
+    EXPECT_THAT(refusal("a.csv", text), HasSubstr("line 1: commas between whole numbers, of which some begin with 0"))
+        << text;
+  }
+  EXPECT_EQ(refusal("a.csv", "01,05,02,05,03,05\n"), "") << "numbers of two digits";
+  // No decimal commas: points, two commas in a piece, or fewer than three pieces.
+  for (const char* text : {"1.5,2, 3\n", "1,2,3, 10,20,30\n", "1,2, 3\n", "1,2,3,10, 20, 30\n"}) {
+    EXPECT_EQ(refusal("a.csv", text), "") << text;
+  }
+}
+
+/// pandas writes NaN as an empty cell.
+TEST(TextReader, PointsWithoutColorHaveEmptyCells) {
+  for (const char* rows : {"1,2,3,10,20,255\n4,5,6,,,\n7,8,9,,255,6\n", "4,5,6,,,\n7,8,9,10,,\n1,2,3,10,20,255\n"}) {
+    const auto file = read_content("a.csv", "x,y,z,r,g,b\n" + std::string(rows));
+    ASSERT_EQ(file.cloud.size(), 3U);
+    ASSERT_EQ(file.info.warnings.size(), 1U);
+    EXPECT_THAT(file.info.warnings[0].message, HasSubstr("2 of 3 points have no color"));
+  }
+}
+
+/// `rest` of point i of 12 behind its row's number, from `first` on.
+template <class Rest>
+std::string numbered(int first, Rest&& rest) {
+  std::string text;
+  for (int i = 0; i < 12; ++i) text += fmt::format("{} {}\n", first + i, rest(i));
+  return text;
+}
+
+TEST(TextReader, NumbersOfRowsAreNoX) {
+  const auto xyz = [](int i) { return fmt::format("{} {} {}", 0.5 + i, 2.25 - i * i, 0.125 * i); };
+  const auto color = [](int i) { return fmt::format(" {} {} {}", 20 * i, 255 - i, i * i); };
+  const std::string cases[] = {
+      numbered(0, xyz), numbered(1, [&](int i) { return xyz(i) + color(i); }),
+      numbered(0, [&](int i) { return xyz(i) + color(i) + fmt::format(" {}", 0.25 + 0.01 * i); })};
+  for (const std::string& text : cases) {
+    const auto file = read_content("a.txt", text);
+    EXPECT_EQ(point(file, 3), Eigen::Vector3d(3.5, -6.75, 0.375)) << text;
+    EXPECT_THAT(all_notes(file), HasSubstr("column 1 numbers the rows"));
+    EXPECT_EQ(file.cloud.has_color(), &text != cases) << text;
+    if (!file.cloud.has_color()) continue;
+    EXPECT_EQ(std::get<Array<Rgb8>>(file.cloud.colors)[3], (Rgb8{60, 252, 9}));
+    EXPECT_THAT(all_notes(file), HasSubstr("columns 5 to 7 taken as red, green and blue"));
+  }
+  // Whole numbers throughout: cells of a grid with their numbers, or points one unit apart in x.
+  EXPECT_THAT(refusal("a.txt", numbered(1, [&](int i) { return fmt::format("{} {} 7", i % 4, i % 3); })),
+              HasSubstr("column 1 counts from 1 on: numbers of the rows, or an x"));
+  // A line of a raster, an x with colors, numbers from elsewhere on, few rows.
+  const auto x_of = [](const std::string& text) { return point(read_content("a.txt", text), 3).x(); };
+  EXPECT_EQ(x_of(numbered(0, [](int i) { return fmt::format("5.5 {} 17", 0.25 * i); })), 3.0);
+  EXPECT_EQ(x_of(numbered(0, [&](int i) { return fmt::format("{} {}", 0.5 * i, 0.25 * i) + color(i); })), 3.0);
+  EXPECT_EQ(x_of(numbered(7, xyz)), 10.0);
+  EXPECT_EQ(x_of("0 .5 .5 .5\n1 1.5 2.5 3.5\n2 1.5 2.5 4.5\n3 1.5 2.5 5.5\n"), 3.0);
+}
+
+TEST(TextReader, NamesInCommentsOfAnyKind) {
+  for (const char* text :
+       {"# columns: id, z, y, x, r, g, b\n9 3 2 1 10 20 30\n", "# point id, z, y, x, r, g, b\n9 3 2 1 10 20 30\n",
+        "# id z y x r g b (meters)\n9 3 2 1 10 20 30\n",
+        "# [0] id [1] z [2] y [3] x [4] r [5] g [6] b\n9 3 2 1 10 20 30\n",
+        "# 0: id, 1: z, 2: y, 3: x, 4: r, 5: g, 6: b\n9 3 2 1 10 20 30\n", "# format: z y x r g b\n3 2 1 10 20 30\n",
+        "% z y x r g b\n3 2 1 10 20 30\n", "%z y x r g b\n3 2 1 10 20 30\n", "; z y x r g b\n3 2 1 10 20 30\n",
+        "! z y x r g b\n3 2 1 10 20 30\n", "% from MATLAB\n% z y x r g b\n3 2 1 10 20 30\n",
+        ";z;y;x;r;g;b\n0;3;2;1;10;20;30\n", "# z | y | x | r | g | b\n3 2 1 10 20 30\n",
+        "Fields: z y x r g b\n3 2 1 10 20 30\n"}) {
+    const auto file = read_content("a.txt", text);
+    ASSERT_EQ(file.cloud.size(), 1U) << text;
+    EXPECT_EQ(point(file, 0), Eigen::Vector3d(1, 2, 3)) << text;
+    EXPECT_EQ(file.cloud.colors, Colors(Array<Rgb8>{{10, 20, 30}})) << text;
+  }
+  const auto prose = read_content("a.txt", "# my note: none of z y x r\n3 2 1 10 20 30\n");
+  EXPECT_EQ(point(prose, 0), Eigen::Vector3d(3, 2, 1)) << "a sentence names nothing";
+  const auto feet = read_content("a.txt", "# x [ft] y [ft] z [ft] i\n1 2 3 4\n");
+  ASSERT_EQ(feet.info.warnings.size(), 1U);
+  EXPECT_EQ(feet.info.warnings[0].id, "unit_in_name");
+}
+
+TEST(TextReader, NamesWithBlanksBetweenTabs) {
+  for (const char* text : {"Coord X [m]\tCoord Y [m]\tCoord Z [m]\tColor R\tColor G\tColor B\n1\t2\t3\t10\t20\t30\n",
+                           "# Pos X\tPos Y\tPos Z\tRed\tGreen\tBlue\n1\t2\t3\t10\t20\t30\n",
+                           "X\tY\tZ\tscan label\tR\tG\tB\n1\t2\t3\tfirst floor\t10\t20\t30\n"}) {
+    const auto file = read_content("a.txt", text);
+    EXPECT_EQ(point(file, 0), Eigen::Vector3d(1, 2, 3)) << text;
+    EXPECT_EQ(file.cloud.colors, Colors(Array<Rgb8>{{10, 20, 30}})) << text;
   }
 }
 

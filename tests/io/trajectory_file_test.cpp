@@ -294,6 +294,31 @@ TEST(TrajectoryFile, SaysWhatIsWrong) {
   EXPECT_THROW(read_trajectory("/no/such.tum"), InputError);
 }
 
+/// pandas writes NaN as an empty field.
+TEST(TrajectoryFile, RowsWithEmptyFieldsAreLeftOut) {
+  for (const char* text :
+       {"1,,,,,,,\n2,1,2,3,0,0,0,1\n3,4,5,6,0,0,0,1\n", "2,1,2,3,0,0,0,1\n2.5,,,,,,,\n3,4,5,6,0,0,0,1\n",
+        "1,5,6,7,,,,\n2,1,2,3,0,0,0,1\n3,4,5,6,0,0,0,1\n",
+        "t,x,y,z,qx,qy,qz,qw\n1,,,,,,,\n2,1,2,3,0,0,0,1\n3,4,5,6,0,0,0,1\n",
+        "1;;;;;;;\n2;1;2;3;0;0;0;1\n3;4;5;6;0;0;0;1\n"}) {
+    const TrajectoryFile file = read_content(text);
+    ASSERT_EQ(file.poses.size(), 2U) << text;
+    EXPECT_EQ(file.poses[1].position, Eigen::Vector3d(4, 5, 6)) << text;
+    EXPECT_THAT(only_warning(file), HasSubstr("1 of 3 rows left out: not finite")) << text;
+  }
+}
+
+TEST(TrajectoryFile, ZeroPosesBetweenOthersAreCounted) {
+  const std::string zero = " 0 0 0 0 0 0 1\n", other = " 1 2 3 0 0 0 1\n";
+  const TrajectoryFile lost = read_content("1" + other + "2" + zero + "3" + other + "4" + zero + "5" + zero);
+  EXPECT_EQ(lost.poses.size(), 5U) << "none is dropped";
+  EXPECT_THAT(only_warning(lost), HasSubstr("3 of 5 poses are exactly 0 0 0 without rotation"));
+  // A start at rest, one return, the place alone, the rotation alone.
+  poses_of("1" + zero + "2" + zero + "3" + other + "4" + zero);
+  poses_of("1" + other + "2 0 0 0 0 0 1 0\n3 0 0 0 0 0 1 0\n");
+  poses_of("1" + other + "2 0 0 1 0 0 0 1\n3 0 0 1 0 0 0 1\n");
+}
+
 TEST(TrajectoryFile, TumWrittenAndReadBackIsIdentical) {
   const TempFolder folder;
   const Trajectory t{{1305031102.175304, {0.1, -1.0 / 3, 1e-9}, Eigen::Quaterniond(0.5, -0.5, 0.5, 0.5)},

@@ -150,6 +150,21 @@ TEST(TransformFile, ColumnMajorListsAreReadAndSaid) {
   EXPECT_EQ(read_content("{\"extrinsic\": " + turn + "}").T(0, 1), -1.0);
 }
 
+TEST(TransformFile, NamesThatSayTheOtherDirectionAreRefused) {
+  for (const char* name : {"T_est_ref", "ref_to_est", "gt2est", "refToEst", "T_estimate_reference", "est_from_ref",
+                           "est_T_ref", "transform_est_gt", "truth_to_estimate"}) {
+    EXPECT_THAT(
+        refusal("{\"" + std::string(name) + "\": " + kJsonRows + "}"),
+        ::testing::AllOf(HasSubstr("the name '" + std::string(name) + "' says"), HasSubstr("numpy.linalg.inv")));
+    EXPECT_THAT(refusal(std::string(name) + " =\n" + kRow16), HasSubstr("the name '" + std::string(name) + "' says"));
+  }
+  EXPECT_THAT(refusal("{\"poses\": {\"T_est_ref\": " + kJsonRows + "}}"), HasSubstr("the name 'poses.T_est_ref'"));
+  for (const char* name :
+       {"T_ref_est", "est_to_ref", "T", "transformation", "T_lidar_camera", "estimate", "T_est", "latest"}) {
+    EXPECT_EQ(read_content("{\"" + std::string(name) + "\": " + kJsonRows + "}").T, expected()) << name;
+  }
+}
+
 TEST(TransformFile, ComputedMatricesAreAMillionthOff) {
   const TransformFile file = read_content("1 0 0 5\n0 1 0 0\n0 0 1 0\n1e-17 -9e-7 0 0.9999995\n");
   EXPECT_EQ(file.T.row(3), Eigen::RowVector4d(0, 0, 0, 1));

@@ -78,6 +78,30 @@ TEST(UnnamedColumns, OneNumberBesideTheColor) {
   }
 }
 
+/// 255.08 is white and a rounding: that red stands before green and blue as much as an intensity would.
+TEST(UnnamedColumns, OvershootsAreJudgedInEveryOrder) {
+  const auto overshot = [](std::size_t i) {
+    return Values{1.0003 * static_cast<double>(i * 5 % 256), 0.99 * static_cast<double>(i * 91 % 256),
+                  0.99 * static_cast<double>(i * 53 % 256)};
+  };
+  const auto fraction = [](std::size_t i) { return Values{static_cast<double>(i % 17) / 17.0}; };
+  FileInfo info;
+  const NumberTable behind = table_of(60, [&](std::size_t i) { return joined({overshot(i), fraction(i)}); });
+  EXPECT_EQ(find_unnamed_colors(behind, false, info), std::nullopt) << "r g b i or i r g b";
+  EXPECT_EQ(info.warnings.at(0).id, "undecidable_columns");
+  const auto label = [](std::size_t i) { return Values{static_cast<double>(i * 83 % 4096)}; };
+  EXPECT_EQ(decide(table_of(60,
+                            [&](std::size_t i) {
+                              return joined({overshot(i), label(i)});
+                            })),
+            (ColumnTriple{3, 4, 5}));
+  EXPECT_EQ(decide(table_of(60,
+                            [&](std::size_t i) {
+                              return joined({label(i), overshot(i)});
+                            })),
+            (ColumnTriple{4, 5, 6}));
+}
+
 TEST(UnnamedColumns, IntensityRingAndTimeAreNoColor) {
   EXPECT_EQ(decide(table_of(50,
                             [](std::size_t i) {

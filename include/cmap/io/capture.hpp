@@ -55,7 +55,8 @@ struct Capture {
 /// Whether a part of a capture is read.
 enum class Want {
   kNo,        ///< not looked at
-  kIfUsable,  ///< left out where it is missing, and with a warning where it is faulty
+  kIfUsable,  ///< left out where it is missing, and with a warning where it is faulty; with a list of faults, each is a
+              ///< warning, and what could be read stays
   kYes,
 };
 

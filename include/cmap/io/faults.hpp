@@ -13,6 +13,8 @@ class Faults {
   Faults() = default;
   explicit Faults(std::vector<std::string>& list) : list_(&list) {}
 
+  /// Whether it has a list.
+  bool goes_on() const { return list_ != nullptr; }
   /// Reads a part; whether nothing was wrong with it.
   bool attempt(const std::function<void()>& read) const;
 

@@ -39,9 +39,10 @@ struct TrajectoryFile {
 /// - COLMAP's and Open3D's .log of a camera's poses, without times.
 /// Times that can only be milli-, micro- or nanoseconds since 1970, or are so named, become seconds. Rotations of
 /// matrices are projected to SO(3). Rows that are not finite or whose quaternion is zero (lost tracking) are left out,
-/// as is every pose but the first of one time; unordered rows are sorted: all with a warning. Throws InputError naming
-/// file, line and reason: another number of columns, what is no number, commas that may be decimal ones, no rotation
-/// (beyond 1e-3), no pose, files that are something else. Thread-safe.
+/// as is every pose but the first of one time; unordered rows are sorted; poses exactly at zero without rotation
+/// between others stay: all with a warning. Throws InputError naming file, line and reason: another number of columns,
+/// what is no number, commas that may be decimal ones, no rotation (beyond 1e-3), no pose, files that are something
+/// else. Thread-safe.
 TrajectoryFile read_trajectory(const std::filesystem::path& path);
 
 /// Two trajectories to be paired by time. `times`, a file with one time a line for each pose, are those of whichever

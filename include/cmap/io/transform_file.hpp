@@ -23,8 +23,9 @@ struct TransformFile {
 ///   object of x y z qx qy qz qw and scale;
 /// - NumPy's .npy; COLMAP's and Open3D's .log of one pose.
 /// Numbers in a row whose translation stands last are column-major, and read so with a warning. The last row may be
-/// 1e-6 off 0 0 0 1 and the linear part 1e-3 off a rotation times a positive scale. Throws InputError naming file, line
-/// where there is one, and reason for everything else. Thread-safe.
+/// 1e-6 off 0 0 0 1 and the linear part 1e-3 off a rotation times a positive scale. A name that says that the matrix
+/// maps the reference to the estimate ("T_est_ref") is refused, as every transform here maps the other way. Throws
+/// InputError naming file, line where there is one, and reason for everything else. Thread-safe.
 TransformFile read_transform(const std::filesystem::path& path);
 
 /// The same, to write: four lines of four numbers that read back as they are, and rows [[4x4]].
