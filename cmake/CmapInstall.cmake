@@ -26,6 +26,7 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/cmapConfigVersion.cmake C
 install(FILES ${PROJECT_BINARY_DIR}/cmapConfig.cmake ${PROJECT_BINARY_DIR}/cmapConfigVersion.cmake
   DESTINATION ${CMAP_INSTALL_CMAKEDIR} COMPONENT development)
 
+file(RELATIVE_PATH CMAP_PREFIX_FROM_PC /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(cmake/cmap.pc.in ${PROJECT_BINARY_DIR}/cmap.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/cmap.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
 

@@ -15,10 +15,10 @@ namespace {
 
 constexpr const char* kDescription =
     "Finds the transform T_dst_src that moves a point-cloud map SRC onto another, DST, in the frame of DST.\n"
-    "Methods, from a start near enough (--initial, or the identity): icp (point to point), plane, gicp (all rigid),\n"
-    "sim3 (with scale, held near the start's at first), tanksandtemples (that benchmark's refinement and scores);\n"
-    "without a start: global (rigid, or with --scale). trajectory: SRC and DST are poses (TUM, EuRoC, KITTI, or\n"
-    "columns that a header line names), paired by time.";
+    "Methods, from a start near enough (--initial, or the identity) where none is said:\n"
+    "{}"
+    "  tanksandtemples  that benchmark's refinement and scores\n"
+    "  trajectory       SRC and DST are poses (TUM, EuRoC, KITTI, or columns that a header line names), paired by time";
 
 constexpr const char* kExample =
     "Example:\n"
@@ -45,13 +45,20 @@ std::vector<std::string> method_names() {
   return names;
 }
 
+std::string description() {
+  std::string methods;
+  for (const cmap::RegistrationMethod* method : cmap::registration_methods()) {
+    const bool rigid = method->scale == cmap::ScaleRule::kOnRequest;
+    methods += fmt::format("  {:<15}  {}{}\n", method->name, method->summary, rigid ? "; rigid, or with --scale" : "");
+  }
+  return fmt::format(kDescription, methods);
+}
+
 void add_options(CLI::App& app, Arguments& a) {
   const auto positive = CLI::Range(1e-9, 1e9).description("");
   app.add_option("SRC", a.source, "map or trajectory to move")->required()->type_name("FILE");
   app.add_option("DST", a.target, "map or trajectory that stays")->required()->type_name("FILE");
-  app.add_option("--method", a.method, "icp, plane, gicp, sim3, global, tanksandtemples, trajectory [gicp]")
-      ->type_name("NAME")
-      ->check(cmap::one_of(method_names()));
+  app.add_option("--method", a.method, "one of these [gicp]")->type_name("NAME")->check(cmap::one_of(method_names()));
   app.add_option("-o,--output", a.output, "transform to write: 4x4 as text")->type_name("FILE");
   app.add_option("--output-cloud", a.cloud, "SRC as moved onto DST, to write")->type_name("FILE.ply");
   app.add_option("--json", a.json, "everything about the result, to write")->type_name("FILE");
@@ -62,7 +69,7 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("--max-distance", a.max_distance_m, "farther pairs are no matches [10 voxels]")
       ->type_name("M")
       ->check(positive);
-  app.add_flag("--scale", a.scale, "estimate the scale too (icp, plane, gicp, global)");
+  app.add_flag("--scale", a.scale, "estimate the scale too, where the method leaves the choice");
   app.add_option("--tau", a.tau_m, "threshold of tanksandtemples")->type_name("M")->check(positive);
   app.add_option("--fit", a.fit, "of trajectories: first-frame, se3, sim3 [sim3]")
       ->type_name("NAME")
@@ -212,7 +219,7 @@ cmap::ExitCode run(const CLI::App& app, const Arguments& a) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(kDescription, "cmap_align");
+  CLI::App app(description(), "cmap_align");
   app.footer(std::string(kExample) + cmap::kDash);
   Arguments arguments;
   add_options(app, arguments);

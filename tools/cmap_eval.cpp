@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "cmap/align/align.hpp"
 #include "cmap/align/trajectory.hpp"
 #include "cmap/core/parallel.hpp"
 #include "cmap/eval/map_error.hpp"
@@ -169,10 +170,16 @@ void read_trajectories(const Arguments& a, cmap::ProtocolInputs& inputs) {
   inputs.estimate_trajectory = std::move(estimate.poses);
 }
 
+/// Whether the alignment starts from a guess.
+bool begins_somewhere(const std::string& align) {
+  if (align == "none" || align == "trajectory") return false;
+  return align == "tanksandtemples" || cmap::registration_method(align).needs_initial;
+}
+
 /// Files that only another option would read are mistakes.
 cmap::ProtocolInputs protocol_inputs(const Arguments& a, const cmap::EvaluationOptions& options) {
   const bool by_trajectories = options.align == "trajectory";
-  if (!a.initial.empty() && (options.align == "none" || by_trajectories || !a.transform.empty())) {
+  if (!a.initial.empty() && (!begins_somewhere(options.align) || !a.transform.empty())) {
     throw cmap::UsageError("--initial needs an --align that begins somewhere, and no --transform");
   }
   if (by_trajectories == (a.reference_trajectory.empty() || a.estimate_trajectory.empty()) ||

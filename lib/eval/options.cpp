@@ -298,7 +298,7 @@ const std::vector<OptionSpec>& evaluation_option_specs() {
       CMAP_OPTION("observed-voxel", kNumber, "METERS", "voxels of the reference that hide others from it",
                   visibility.voxel_m, positive(n, value), o.visibility.voxel_m),
       CMAP_OPTION("align", kWord, "METHOD",
-                  "move the estimate first: none, icp, plane, gicp, sim3, global, trajectory, tanksandtemples", align,
+                  "move the estimate first: none, a method of cmap_align, trajectory or tanksandtemples", align,
                   one_of(n, value, align_names()), o.align),
       CMAP_OPTION("align-voxel", kNumber, "METERS", "thinning for the alignment; by default from the reference's size",
                   align_voxel_m, positive_or_unset(n, value), optional_number(o.align_voxel_m)),

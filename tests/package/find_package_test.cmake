@@ -93,7 +93,7 @@ if(pkg_config)
   file(GLOB_RECURSE package_file ${prefix}/*/cmap.pc)
   get_filename_component(package_folder ${package_file} DIRECTORY)
   set(ENV{PKG_CONFIG_PATH} ${package_folder})
-  execute_process(COMMAND ${pkg_config} --define-variable=prefix=${prefix} --static --cflags --libs cmap
+  execute_process(COMMAND ${pkg_config} --static --cflags --libs cmap
     OUTPUT_VARIABLE flags RESULT_VARIABLE code OUTPUT_STRIP_TRAILING_WHITESPACE)
   if(NOT code EQUAL 0)
     message(FATAL_ERROR "pkg-config does not find cmap")

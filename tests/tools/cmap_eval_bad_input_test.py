@@ -242,7 +242,7 @@ class BadUsage(CmapEval):
             ("accuracy<=1", "accuracy@0.2"),
             ("accuracy@7<=1", "7 m is not among the thresholds"),
             ("mme<=1", "mean_map_entropy is not computed"),
-            ("chamfer.median<=1", "chamfer has no field"),
+            ("chamfer.median<=1", "chamfer has no number median"),
             ("", "expected METRIC"),
         ):
             with self.subTest(requirement):

@@ -53,7 +53,6 @@ class OneMap(CmapEval):
         mixed = [dict(alone, alignment=pair["alignment"]), dict(alone, metrics=pair["metrics"]), dict(pair, alignment=None)]
         for metric in ("color_consistency", "mean_map_entropy", "point_spacing"):
             mixed.append(dict(alone, metrics={metric: pair["metrics"][metric]}))
-            mixed.append(dict(pair, metrics={metric: alone["metrics"][metric]}))
         mixed.append(dict(alone, inputs=pair["inputs"]))
         mixed.append(dict(pair, inputs=alone["inputs"]))
         for report in mixed:

@@ -53,7 +53,7 @@ enum class ComparisonFormat { kText, kMarkdown, kCsv, kLatex, kHtml };
 std::string format_comparison(const std::vector<SavedReport>& reports, const ComparisonOptions& options,
                               ComparisonFormat format);
 
-/// Throws UsageError for a name that is no picture's, and where pictures other than .svg are not built.
+/// Throws UsageError for a name that is no picture's, UnsupportedError where pictures other than .svg are not built.
 void check_figure_name(const std::filesystem::path& name);
 
 /// A chart of bars for each metric and of curves for each with thresholds, and of local color recall against tau where

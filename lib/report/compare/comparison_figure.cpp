@@ -91,6 +91,8 @@ void check_figure_name(const std::filesystem::path& name) {
     FigureModule().check_name(name);
   } catch (const UsageError& error) {
     throw UsageError(fmt::format("{}; a chart can also be .svg", error.what()));
+  } catch (const UnsupportedError& error) {
+    throw UnsupportedError(fmt::format("{}; a chart can also be .svg", error.what()));
   }
 }
 

@@ -82,7 +82,7 @@ Runner::Runner(const LeaderboardManifest& manifest, const LeaderboardRun& run) :
   try {
     figures_.emplace();
     files_.emplace_back("figure.png");
-  } catch (const UsageError& error) {
+  } catch (const UnsupportedError& error) {
     say(fmt::format("no pictures: {}", error.what()));
   }
 }
