@@ -59,6 +59,13 @@ def color_distance(e2r, r2e, max_distance):
     return record
 
 
+def median_color_distance(e2r, r2e):
+    """(median of one direction + median of the other) / 2 of the color errors; null without a pair in a direction."""
+    a, b = (quantile(color_error(within(pairs, -1, np.inf)), 0.5) for pairs in (e2r, r2e))
+    value = (a + b) / 2 if a is not None and b is not None else None
+    return {"value": value, "estimate_to_reference": a, "reference_to_estimate": b, **without_color(e2r.own, r2e.own)}
+
+
 def color_fidelity(cd):
     """CF = -20 log10(CD); null for CD = 0 and for no CD."""
     return {"value": float(-20 * np.log10(cd)) if cd else None}

@@ -34,7 +34,7 @@ DEFAULTS = {
     "color-max-distance": None,
 }
 COLOR_METRICS = ["color_distance", "color_fidelity", "local_color_recall", "color_consistency", "delta_e",
-                 "color_distance_by_range", "color_distance_exposure_free", "color_psnr"]
+                 "color_distance_by_range", "median_color_distance", "color_distance_exposure_free", "color_psnr"]
 
 
 def with_defaults(given):
@@ -83,6 +83,7 @@ def color_metrics(ref, ref_color, est, est_color, e2r, r2e, origin, o):
                                                      o["ccs-min-points"]),
         "delta_e": color.delta_e(e2r, r2e, o["lcr-radius"]),
         "color_distance_by_range": color.color_distance_by_range(e2r, r2e),
+        "median_color_distance": color.median_color_distance(e2r, r2e),
         "color_distance_exposure_free": color.color_distance_exposure_free(e2r, r2e, o["lcr-radius"], o["color-max-distance"]),
         "color_psnr": color.color_psnr(e2r, r2e),
     }
