@@ -1,6 +1,7 @@
+#include "cmap/peers/mpeg.hpp"
+
 #include <cmath>
 
-#include "cmap/metrics/peers.hpp"
 #include "metrics/map_pairs.hpp"
 
 namespace cmap {

@@ -1,4 +1,4 @@
-#include "cmap/metrics/peers.hpp"
+#include "cmap/peers/mapeval.hpp"
 
 #include <Eigen/Cholesky>
 #include <cmath>
@@ -125,96 +125,6 @@ TEST(MapEvalEntropy, LeavesOneDimensionsConstantOnly) {
   EXPECT_DOUBLE_EQ(found.value, 0.5 * std::log(2.0 * std::numbers::pi * e) + 0.5);
   EXPECT_EQ(mapeval_entropy(shape, 3).n_valid, 3U);
   EXPECT_TRUE(std::isnan(mapeval_entropy(shape, 21).value));
-}
-
-TEST(Open3dRegistration, HandComputed) {
-  const Doubles sq_dist{0.0, 0.25, 1.0, 4.0};
-  const Open3dRegistration found = open3d_registration(sq_dist, 1.0);  // below, not at the threshold
-  EXPECT_EQ(found.n_correspondences, 2U);
-  EXPECT_EQ(found.fitness, 0.5);
-  EXPECT_DOUBLE_EQ(found.inlier_rmse_m, std::sqrt(0.125));
-  EXPECT_EQ(open3d_registration(sq_dist, 100.0).fitness, 1.0);
-}
-
-TEST(Open3dRegistration, WithoutInliersIsZeroLikeTheTool) {
-  const Open3dRegistration none = open3d_registration(Doubles{1.0, 2.0}, 1.0);
-  EXPECT_EQ(none.n_correspondences, 0U);
-  EXPECT_EQ(none.fitness, 0.0);
-  EXPECT_EQ(none.inlier_rmse_m, 0.0);
-}
-
-TEST(Open3dRegistration, IsOursWhereNoDistanceIsTheThreshold) {
-  const Doubles sq_dist = random_squares(5000);
-  for (double threshold_m : {0.05, 0.1, 0.7}) {
-    const Open3dRegistration theirs = open3d_registration(sq_dist, threshold_m);
-    const MapPair pair = test::pair_with(Array<double>(sq_dist.begin(), sq_dist.end()));
-    const MetricOptions options = test::with_thresholds({threshold_m});
-    EXPECT_EQ(theirs.fitness, *test::at_threshold(test::measured(catalog::fitness, pair, options), 0).value);
-    EXPECT_NEAR_RELATIVE(theirs.inlier_rmse_m,
-                         *test::at_threshold(test::measured(catalog::accuracy, pair, options), 0).value,
-                         test::kSummation);
-  }
-}
-
-TEST(CloudAnalyzer, CurveByHand) {
-  // Thresholds 0.05, 0.1, 0.2, 0.3, 0.5, 1: F is 0, then 2/3 from 0.3 on (P 1/2, R 1), inclusive.
-  const Doubles estimate{0.09, 4.0}, reference{0.0625};
-  const CloudAnalyzerCurve curve = cloudanalyzer_curve(estimate, reference);
-  ASSERT_EQ(curve.scores.size(), 6U);
-  EXPECT_EQ(curve.scores[2].f1, 0.0);
-  EXPECT_EQ(curve.scores[3].precision, 0.5);
-  EXPECT_EQ(curve.scores[3].recall, 1.0);
-  EXPECT_DOUBLE_EQ(curve.scores[3].f1, 2.0 / 3.0);
-  EXPECT_DOUBLE_EQ(curve.auc, (0.1 * (1.0 / 3.0) + 0.7 * (2.0 / 3.0)) / 0.95);
-}
-
-TEST(CloudAnalyzer, SummaryByHand) {
-  const CloudAnalyzerSummary found = cloudanalyzer_summary(Doubles{1.0, 9.0, 25.0, 49.0});
-  EXPECT_DOUBLE_EQ(found.mean_m, 4.0);
-  EXPECT_EQ(found.median_m, 4.0);
-  EXPECT_EQ(found.max_m, 7.0);
-  EXPECT_DOUBLE_EQ(found.standard_deviation_m, std::sqrt(5.0));  // population
-}
-
-TEST(CloudAnalyzer, StructureRaisesEigenvaluesAndCountsVoxelsAmongEqualOnes) {
-  const auto pair_at = [](std::int64_t x, double spread) {
-    return GaussianPair{
-        {x, 0, 0}, {101, kZero, diagonal(0, 0, 0)}, {101, kZero, 100.0 * diagonal(spread, spread, spread)}};
-  };
-  // Covariances 0 against s^2 I become 1e-6 I against s^2 I: sqrt 3 (s - 1e-3), for s = 1 and 2; the third has no
-  // others.
-  const std::vector<GaussianPair> pairs{pair_at(0, 1.0), pair_at(1, 4.0), pair_at(100, 0.0)};
-  const CloudAnalyzerStructure found = cloudanalyzer_structure(pairs, 5);
-  EXPECT_NEAR(found.awd_m, std::numbers::sqrt3 * (0.999 + 1.999) / 3.0, 1e-12);
-  EXPECT_EQ(found.n_awd_voxels, 3U);
-  EXPECT_EQ(found.n_scs_voxels, 2U);
-  EXPECT_EQ(found.scs, 0.0) << "one other voxel has no spread";
-  const CloudAnalyzerStructure zeros =
-      cloudanalyzer_structure(std::vector<GaussianPair>{pair_at(0, 0.0), pair_at(1, 0.0)}, 5);
-  EXPECT_EQ(zeros.n_scs_voxels, 2U) << "ours leaves such voxels out";
-  EXPECT_EQ(zeros.scs, 0.0);
-  EXPECT_TRUE(std::isnan(cloudanalyzer_structure({}, 5).awd_m));
-}
-
-TEST(CloudCompareDistance, HandComputed) {
-  const CloudCompareDistance found = cloudcompare_distance(Doubles{1.0, 9.0});
-  EXPECT_EQ(found.mean_m, 2.0);
-  EXPECT_EQ(found.standard_deviation_m, 1.0);  // population: 1, not sqrt 2
-  EXPECT_EQ(cloudcompare_distance(Doubles{0.25, 0.25, 0.25}).standard_deviation_m, 0.0);
-}
-
-TEST(CloudCompareDistance, StoresDistancesAsFloats) {
-  EXPECT_EQ(cloudcompare_distance(Doubles{0.01}).mean_m, static_cast<double>(0.1f));
-}
-
-TEST(CloudCompareDistance, EqualsTheDefinition) {
-  const Doubles sq_dist = random_squares(5000);
-  double mean = 0.0, variance = 0.0;
-  for (double sq : sq_dist) mean += std::sqrt(sq) / 5000.0;
-  for (double sq : sq_dist) variance += (std::sqrt(sq) - mean) * (std::sqrt(sq) - mean) / 5000.0;
-  const CloudCompareDistance found = cloudcompare_distance(sq_dist);
-  EXPECT_NEAR(found.mean_m, mean, 3e-8);  // half a float digit of distances below 1 m
-  EXPECT_NEAR(found.standard_deviation_m, std::sqrt(variance), 1e-7);
 }
 
 }  // namespace
