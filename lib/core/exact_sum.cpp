@@ -77,7 +77,7 @@ double magnitude(const Words& words) {
 }  // namespace
 
 void ExactSum::add_wide(double term) {
-  constexpr double kLimit = 0x1p262;  // squared distances of floats stay below
+  constexpr double kLimit = 0x1p262;  // 2^48 of them fit the words
   if (!(std::abs(term) < kLimit)) throw std::invalid_argument("ExactSum: NaN, infinite or too large a term");
   int exponent = 0;
   const double mantissa = std::frexp(term, &exponent);  // of 53 bits: whole units, as the term is at least 2^29

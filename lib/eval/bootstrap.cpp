@@ -77,13 +77,13 @@ std::vector<Interval> bootstrap(const BlockSums& blocks, const MetricSettings& s
                    [&](std::span<const double> weights) { return formulas.values(weights); });
 }
 
-std::vector<Interval> bootstrap_difference(const BlockSums& a, const BlockSums& b, const MetricSettings& settings,
-                                           const BootstrapOptions& options) {
+std::vector<Interval> bootstrap_difference(const BlockSums& a, const MetricSettings& settings_a, const BlockSums& b,
+                                           const MetricSettings& settings_b, const BootstrapOptions& options) {
   if (a.block_m != b.block_m) throw std::invalid_argument("bootstrap_difference: blocks of two sizes");
   std::vector<std::array<std::int64_t, 3>> keys;
   std::ranges::set_union(a.keys, b.keys, std::back_inserter(keys));
   const MetricSums sums_a = aligned(a, keys), sums_b = aligned(b, keys);
-  const MetricFormulas formulas_a(sums_a, settings), formulas_b(sums_b, settings);
+  const MetricFormulas formulas_a(sums_a, settings_a), formulas_b(sums_b, settings_b);
   return resampled(keys.size(), options, [&](std::span<const double> weights) {
     const std::vector<SummedValue> of_a = formulas_a.values(weights);
     std::vector<SummedValue> differences;

@@ -6,8 +6,8 @@
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
 #include "cmap/metrics/catalog.hpp"
+#include "cmap/peers/peer_tool.hpp"
 #include "eval/measurement.hpp"
-#include "eval/peer_records.hpp"
 #include "eval/plausibility.hpp"
 #include "eval/preparation.hpp"
 #include "eval/stage_clock.hpp"
@@ -64,6 +64,28 @@ void check_plausibility(const MetricInputs& inputs, const WholeSums& sums, const
   if (std::ranges::none_of(selected_metrics(selection, true), by_threshold)) return;
   const Record fitness = catalog::fitness.value(sums.of(catalog::fitness), inputs.settings);
   warn_about_spacing(spacing, pair.nearest_in_reference, fitness.list("per_threshold"), warnings);
+}
+
+/// Whether tools that know no points without color can be run.
+bool every_point_has_color(const MapPair& pair) {
+  return pair.has_color() && pair.reference.n_without_color + pair.estimate.n_without_color == 0;
+}
+
+/// What the tools of options.as would print.
+std::vector<PeerRecord> peer_records(MetricInputs& inputs, const EvaluationOptions& options,
+                                     std::vector<Warning>& warnings) {
+  const PeerOptions peer_options{tanks_and_temples_tau_m(options), options.crop};
+  std::vector<PeerRecord> records;
+  for (const std::string& name : options.as) {
+    const PeerTool& tool = *peer_tool(name);
+    PeerRecord& peer = records.emplace_back(PeerRecord{name, {}});
+    if (tool.no_color.empty() || every_point_has_color(*inputs.pair)) {
+      peer.record = tool.record(inputs, peer_options);
+    } else {
+      warnings.push_back({std::string(tool.no_color_id), std::string(tool.no_color)});
+    }
+  }
+  return records;
 }
 
 /// What is said beside the metrics, where the options ask for it.

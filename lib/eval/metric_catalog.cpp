@@ -104,7 +104,6 @@ MetricSelection select_metrics(const EvaluationOptions& options) {
   const bool as_mapeval = std::ranges::count(options.as, "mapeval") > 0;
   selection.needs_gaussians =
       as_mapeval || contains(catalog::average_wasserstein) || contains(catalog::spatial_consistency);
-  selection.needs_neighborhoods = as_mapeval || contains(catalog::mean_map_entropy);
   return selection;
 }
 
@@ -122,7 +121,6 @@ MetricSelection select_map_metrics(const EvaluationOptions& options) {
     }
     for (const MetricInfo* metric : metrics) select(selection, *metric, name);
   }
-  selection.needs_neighborhoods = selection.contains(catalog::mean_map_entropy.info.id);
   return selection;
 }
 

@@ -13,6 +13,7 @@
 #include "cmap/core/spelling.hpp"
 #include "cmap/eval/metric_catalog.hpp"
 #include "cmap/io/json_text.hpp"
+#include "cmap/peers/peer_tool.hpp"
 #include "eval/presets.hpp"
 
 namespace cmap {
@@ -72,9 +73,9 @@ std::vector<std::string> words(const char* name, const Json& value) {
 std::vector<std::string> tools(const char* name, const Json& value) {
   std::vector<std::string> list = words(name, value);
   for (const std::string& tool : list) {
-    if (std::ranges::count(peer_tools(), tool) == 0) {
+    if (peer_tool(tool) == nullptr) {
       refuse(name, tool,
-             fmt::format("is unknown{}; tools are {}", did_you_mean(tool, peer_tools()), fmt::join(peer_tools(), ", "))
+             fmt::format("is unknown{}; tools are {}", did_you_mean(tool, peer_names()), fmt::join(peer_names(), ", "))
                  .c_str());
     }
   }
@@ -330,12 +331,6 @@ const std::vector<OptionSpec>& evaluation_option_specs() {
 
 ReadOptions read_options(const EvaluationOptions& options, bool sha256) {
   return {.sha256 = sha256, .keep_noise = options.keep_noise, .classes = options.classes};
-}
-
-const std::vector<std::string>& peer_tools() {
-  static const std::vector<std::string> tools{"color-map-evaluation", "cloudanalyzer",  "mapeval", "open3d", "mpeg",
-                                              "cloudcompare",         "tanksandtemples"};
-  return tools;
 }
 
 double tanks_and_temples_tau_m(const EvaluationOptions& options) {

@@ -1,7 +1,6 @@
 #include "cmap/eval/point_errors.hpp"
 
 #include "cmap/io/point_cloud_file.hpp"
-#include "eval/cloud_of.hpp"
 
 namespace cmap {
 namespace {

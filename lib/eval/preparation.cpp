@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 
 #include "cmap/core/error.hpp"
@@ -72,6 +73,7 @@ void check_voxels_of_metrics(const EvaluationOptions& options, const MetricSelec
   if (selection.contains("color_consistency") && map.cloud.has_color()) {
     check_voxels("ccs-voxel", options.ccs_voxel_m, defaults.ccs_voxel_m, map);
   }
+  if (options.bootstrap > 0) check_voxels("block", options.block_m, 0.0, map);
   if (selection.needs_gaussians) check_voxels("awd-voxel", options.awd_voxel_m, defaults.awd_voxel_m, map);
 }
 
@@ -84,6 +86,19 @@ void crop_and_thin(PointCloud& cloud, const EvaluationOptions& options, const ch
     check_voxels("voxel", *options.voxel_m, 0.0, {cloud, body_of(cloud), which});
     cloud = voxel_thinned(cloud, *options.voxel_m);
   }
+}
+
+/// By a transform that leaves the map where a map can be: readers take no coordinate as far.
+PointCloud moved(const PointCloud& cloud, const Eigen::Matrix4d& T) {
+  constexpr double kFarthest_m = 1e9;
+  PointCloud result = transformed(cloud, T);
+  const Box3d box = bounds(result);
+  const double farthest_m = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
+  if (!(farthest_m < kFarthest_m)) {
+    throw UnsupportedError(fmt::format(
+        "the transform moves the estimate to coordinates of {:.3g} m: is it T_ref_est, in meters?", farthest_m));
+  }
+  return result;
 }
 
 /// Moves a cloud's origin; offsets are rounded to float.
@@ -107,7 +122,7 @@ CoordinateSteps prepare_clouds(PointCloud& reference, PointCloud& estimate, cons
   require_finite_points(estimate, "estimate");
   const double finest_m = finest_step_needed_m(options);
   const CoordinateSteps steps{coarse_step(reference, finest_m), coarse_step(estimate, finest_m)};
-  if (T_ref_est != Eigen::Matrix4d::Identity()) estimate = transformed(estimate, T_ref_est);
+  if (T_ref_est != Eigen::Matrix4d::Identity()) estimate = moved(estimate, T_ref_est);
   crop_and_thin(reference, options, "reference");
   crop_and_thin(estimate, options, "estimate");
 

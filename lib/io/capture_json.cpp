@@ -118,7 +118,8 @@ CaptureDescription parse_capture_json(const std::string& text, const std::string
     });
   };
   part([&](const Json& json) {
-    check_keys(json, "", {"version", "camera", "T_imu_lidar", "T_lidar_camera"}, {"imu", "time_offset"});
+    check_keys(json, "", {"version", "camera", "T_imu_lidar", "T_lidar_camera"},
+               {"imu", "time_offset", "T_world_imu_start"});
   });
   if (!parsed.is_object()) return description;
   part_of("version", [](const Json& json) {
@@ -130,7 +131,8 @@ CaptureDescription parse_capture_json(const std::string& text, const std::string
     if (!doubt.empty()) description.warnings.push_back({"camera_of_another_size", source + ": camera.K: " + doubt});
   });
   for (auto [key, T] :
-       {std::pair("T_imu_lidar", &calibration.T_imu_lidar), std::pair("T_lidar_camera", &calibration.T_lidar_camera)}) {
+       {std::pair("T_imu_lidar", &calibration.T_imu_lidar), std::pair("T_lidar_camera", &calibration.T_lidar_camera),
+        std::pair("T_world_imu_start", &calibration.T_world_imu_start)}) {
     part_of(key, [&](const Json& json) { *T = transform_of(json, key, description); });
   }
   part_of("imu", [&](const Json& json) { description.acceleration_unit_mps2 = acceleration_unit_of(json); });

@@ -10,15 +10,15 @@ constexpr std::size_t kRunSlots = 4096;  // whose values stay in the first cache
 constexpr std::size_t kTaskSlots = 1 << 16;
 
 /// The band of a distance: thresholds mean what was typed (spatial/threshold.hpp).
-std::uint8_t band_of(double distance_m, std::span<const double> upper_m, const NearestPairs& pairs, std::size_t slot,
-                     double most_rounding_m) {
+std::uint32_t band_of(double distance_m, std::span<const double> upper_m, const NearestPairs& pairs, std::size_t slot,
+                      double most_rounding_m) {
   std::size_t band = 0;
   while (band < upper_m.size() && distance_m > upper_m[band]) ++band;
   while (band > 0 && distance_m <= upper_m[band - 1] + most_rounding_m &&
          distance_m <= upper_m[band - 1] + pairs.rounding_m(slot)) {
     --band;
   }
-  return static_cast<std::uint8_t>(band);
+  return static_cast<std::uint32_t>(band);
 }
 
 }  // namespace
@@ -50,9 +50,10 @@ std::vector<std::span<const SlotRun>> run_tasks(std::span<const SlotRun> runs) {
   return tasks;
 }
 
-RunReader::RunReader(const MetricInputs& inputs, Side side)
+RunReader::RunReader(const MetricInputs& inputs, Side side, bool with_colors)
     : inputs_(inputs),
       side_(side),
+      with_colors_(with_colors && inputs.pair != nullptr && inputs.pair->has_color()),
       distance_m_(kRunSlots),
       color_distance_(kRunSlots),
       banded_distance_m_(kRunSlots),
@@ -64,7 +65,7 @@ PointRun RunReader::read(const SlotRun& slots) {
   PointRun run{inputs_, side_, slots.begin, slots.end - slots.begin};
   if (inputs_.pair == nullptr) return run;
   read_distances(run);
-  if (inputs_.pair->has_color()) read_colors(run);
+  if (with_colors_) read_colors(run);
   return run;
 }
 

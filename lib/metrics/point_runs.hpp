@@ -23,7 +23,7 @@ std::vector<std::span<const SlotRun>> run_tasks(std::span<const SlotRun> runs);
 /// Computes what several metrics read of a run's points. Buffers are used again; one reader a thread.
 class RunReader {
  public:
-  RunReader(const MetricInputs& inputs, Side side);
+  RunReader(const MetricInputs& inputs, Side side, bool with_colors);
 
   /// Valid until the next call.
   PointRun read(const SlotRun& run);
@@ -34,8 +34,9 @@ class RunReader {
 
   const MetricInputs& inputs_;
   Side side_;
+  bool with_colors_;
   std::vector<double> distance_m_, color_distance_, banded_distance_m_, banded_sq_dist_;
-  std::vector<std::uint8_t> band_;
+  std::vector<std::uint32_t> band_;
   std::vector<std::size_t> band_begin_;
 };
 

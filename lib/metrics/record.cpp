@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <stdexcept>
 
 namespace cmap {
 namespace {
@@ -58,9 +59,16 @@ const std::vector<Record>& Record::list(std::string_view name) const& {
   return found == rows.end() ? kNone : found->rows;
 }
 
-std::vector<Record>& Record::list(std::string_view name) & {
+std::vector<Record>& Record::list_to_change(std::string_view name) {
   const auto found = std::ranges::find(rows, name, &RecordRows::name);
-  return found == rows.end() ? rows.emplace_back(RecordRows{std::string(name), {}}).rows : found->rows;
+  if (found == rows.end()) throw std::out_of_range("a record has no list " + std::string(name));
+  return found->rows;
+}
+
+Record& Record::part_to_change(std::string_view name) {
+  const auto found = std::ranges::find(parts, name, &NamedRecord::name);
+  if (found == parts.end()) throw std::out_of_range("a record has no part " + std::string(name));
+  return found->record;
 }
 
 const Record* Record::part(std::string_view name) const {

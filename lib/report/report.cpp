@@ -18,7 +18,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Text for JSON: file names may be in any encoding, bytes that are no UTF-8 become U+FFFD.
 Json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 Json input_json(const InputDescription& input) {

@@ -44,7 +44,7 @@ def sources(*suffixes):
 
 
 def library_text():
-    return "\n".join(path.read_text() for path in sorted((SOURCE / "lib").rglob("*.cpp")))
+    return "\n".join(path.read_text() for path in sorted((SOURCE / "lib").rglob("*.?pp")))
 
 
 def warning_ids():

@@ -62,7 +62,9 @@ TEST(Bootstrap, SumsOverAllBlocksGiveTheValuesOfTheReport) {
   const Evaluation evaluation = evaluated_with_blocks();
   Values expected = reported(evaluation);
   const Values found = summed(evaluation.intervals->blocks, evaluation.options);
-  for (const char* no_mean_nor_share : {"hausdorff", "point_spacing"}) expected.erase(no_mean_nor_share);
+  for (const Metric* metric : metric_list()) {
+    if (metric->value == nullptr) expected.erase(std::string(metric->info.id));  // no mean nor share
+  }
   ASSERT_EQ(found.size(), expected.size());
   for (const auto& [name, value] : expected) {
     ASSERT_TRUE(found.contains(name)) << name;
@@ -136,7 +138,7 @@ TEST(Bootstrap, CoversTheTruthAtItsLevel) {
     const Interval found = chamfer_of(bootstrap(blocks_of(means), kSettings, options));
     covered += found.lower <= 1.0 && 1.0 <= found.upper ? 1 : 0;
     const Interval difference =
-        chamfer_of(bootstrap_difference(blocks_of(means), blocks_of(better), kSettings, options));
+        chamfer_of(bootstrap_difference(blocks_of(means), kSettings, blocks_of(better), kSettings, options));
     difference_covered += difference.lower <= -0.1 && -0.1 <= difference.upper ? 1 : 0;
     EXPECT_LT(difference.upper - difference.lower, 0.3 * (found.upper - found.lower)) << "what both share cancels";
   }
@@ -148,14 +150,46 @@ TEST(Bootstrap, DifferencesAreTakenBlockByBlock) {
   BlockSums a = blocks_of({0.25, 0.75, 0.5});
   BlockSums b = blocks_of({0.25, 0.75, 0.5});
   b.keys = {{1, 0, 0}, {2, 0, 0}, {3, 0, 0}};  // one block further
-  const Interval same = chamfer_of(bootstrap_difference(a, a, kSettings, {}));
+  const Interval same = chamfer_of(bootstrap_difference(a, kSettings, a, kSettings, {}));
   EXPECT_EQ(same.lower, 0.0);
   EXPECT_EQ(same.upper, 0.0);
-  const Interval moved = chamfer_of(bootstrap_difference(a, b, kSettings, {}));
+  const Interval moved = chamfer_of(bootstrap_difference(a, kSettings, b, kSettings, {}));
   EXPECT_EQ(moved.value, 0.0);
   EXPECT_LT(moved.lower, 0.0) << "other blocks, so that nothing cancels";
   b.block_m = 2.0;
-  EXPECT_THROW(bootstrap_difference(a, b, kSettings, {}), std::invalid_argument);
+  EXPECT_THROW(bootstrap_difference(a, kSettings, b, kSettings, {}), std::invalid_argument);
+}
+
+/// One estimate evaluated with two lists of thresholds: nothing differs, whatever the bands are.
+TEST(Bootstrap, EachIsReadWithItsOwnThresholds) {
+  EvaluationOptions few = options_for({"geometry"}), many = few;
+  few.bootstrap = many.bootstrap = 20;
+  few.block_m = many.block_m = 4.0;
+  few.thresholds_m = {0.2, 0.1};
+  many.thresholds_m = {0.2, 0.15, 0.1, 0.05};
+  const PointCloud reference = test::painted_sheet(2000, 1), estimate = test::painted_sheet(1500, 2);
+  const Evaluation a = evaluate(reference, estimate, few), b = evaluate(reference, estimate, many);
+  const std::vector<Interval> differences = bootstrap_difference(
+      a.intervals->blocks, MetricSettings(few), b.intervals->blocks, MetricSettings(many), {.n_replicates = 20});
+  EXPECT_GT(differences.size(), 10U);
+  for (const Interval& v : differences) {
+    EXPECT_NEAR(v.lower, 0.0, 1e-12) << v.id;
+    EXPECT_NEAR(v.upper, 0.0, 1e-12) << v.id;
+  }
+}
+
+TEST(Bootstrap, WhichMetricsAreAskedForChangesNoBlock) {
+  EvaluationOptions options = options_for({"chamfer"});
+  options.bootstrap = 20;
+  options.block_m = 1.0;
+  options.awd_voxel_m = 5.0;  // whose centers lie where no point is
+  options.awd_min_points = 10;
+  const PointCloud reference = test::painted_sheet(2000, 1), estimate = test::painted_sheet(1500, 2);
+  const Evaluation alone = evaluate(reference, estimate, options);
+  options.metrics = {"chamfer", "AWD", "CCS"};
+  const Evaluation more = evaluate(reference, estimate, options);
+  EXPECT_EQ(more.intervals->blocks.keys, alone.intervals->blocks.keys);
+  EXPECT_EQ(chamfer_of(more.intervals->metrics).lower, chamfer_of(alone.intervals->metrics).lower);
 }
 
 TEST(Bootstrap, TheSameForAnyNumberOfThreads) {

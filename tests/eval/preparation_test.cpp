@@ -191,5 +191,24 @@ TEST(Preparation, RefusesAPointThatIsNotFinite) {
   }
 }
 
+TEST(Prepare, ATransformToWhereNoMapIsIsRefused) {
+  Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
+  for (const double far_m : {1e9, 1e60}) {
+    T(0, 3) = far_m;
+    const std::string says = refusal_of<UnsupportedError>([&] { prepared(kCorners, kCorners, {}, T); });
+    EXPECT_THAT(says, HasSubstr("the transform moves the estimate to coordinates of 1e+"));
+  }
+  T(0, 3) = 1e7;
+  EXPECT_NO_THROW(prepared(kCorners, kCorners, {}, T));
+}
+
+TEST(Prepare, BlocksTooSmallAreRefusedByName) {
+  EvaluationOptions options = test::options_for({"chamfer"});
+  options.block_m = 1e-9;
+  EXPECT_NO_THROW(prepared(kCorners, kCorners, options));
+  options.bootstrap = 10;
+  EXPECT_THAT(refusal_of<UsageError>([&] { prepared(kCorners, kCorners, options); }), ::testing::StartsWith("block: "));
+}
+
 }  // namespace
 }  // namespace cmap

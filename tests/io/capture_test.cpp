@@ -20,6 +20,7 @@ constexpr const char* kCaptureJson = R"({
  "camera": {"model": "pinhole", "width": 30, "height": 20, "K": [25.5, 26, 14.5, 9.5], "distortion": [0.1, 0, 0, 0]},
  "T_imu_lidar": [[0,-1,0,0.5],[1,0,0,0],[0,0,1,-0.25],[0,0,0,1]],
  "T_lidar_camera": [[0,0,1,0],[-1,0,0,0],[0,-1,0,0],[0,0,0,1]],
+ "T_world_imu_start": [[0,-1,0,5],[1,0,0,6],[0,0,1,7],[0,0,0,1]],
  "imu": {"acceleration_unit": "g"},
  "time_offset": {"image_s": 0.5, "imu_s": -0.25}
 })";
@@ -63,6 +64,7 @@ TEST(Capture, OpensAHandMadeOne) {
   EXPECT_EQ(calibration.camera.distortion, (std::vector<double>{0.1, 0, 0, 0}));
   EXPECT_EQ(calibration.T_imu_lidar * Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(-1.5, 1, 2.75));
   EXPECT_EQ(calibration.T_lidar_camera * Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(3, -1, -2));
+  EXPECT_EQ(calibration.T_world_imu_start * Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(3, 7, 10));
   ASSERT_EQ(capture.images.size(), 2U);
   EXPECT_EQ(capture.images[1].time_s, 3.0);
   EXPECT_EQ(capture.images[1].path, folder / "images/b.jpg");

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "cmap/metrics/geometry.hpp"
 #include "metrics/measured.hpp"
@@ -12,6 +13,7 @@ TEST(FScore, HandComputed) {
   EXPECT_EQ(f_score(1.0, 1.0), 1.0);
   EXPECT_DOUBLE_EQ(f_score(1.0, 2.0 / 3.0), 0.8);
   EXPECT_EQ(f_score(0.25, 0.75), 0.375);
+  EXPECT_TRUE(std::isnan(f_score(NAN, NAN)) && std::isnan(f_score(0.0, NAN))) << "what is missing is not 0";
 }
 
 TEST(FScore, LiesBetweenBothAndRisesWithEach) {

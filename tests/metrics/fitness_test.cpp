@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "metrics/measured.hpp"
@@ -56,6 +57,18 @@ TEST(Fitness, SharesRiseWithTheThreshold) {
     EXPECT_GE(*at_threshold(found, t).value, *at_threshold(found, t - 1).value);
   }
   EXPECT_LT(*at_threshold(found, 0).value, *at_threshold(found, 99).value);
+}
+
+/// More bands than a byte counts.
+TEST(Fitness, TakesAnyNumberOfThresholds) {
+  std::vector<double> thresholds;
+  for (int i = 1; i <= 1000; ++i) thresholds.push_back(0.001 * i);
+  const Array<double> sq_dist = test::random_squares(5000, 6);
+  const Record found = fitness(sq_dist, thresholds);
+  for (const std::size_t t : {0u, 99u, 254u, 255u, 256u, 599u, 999u}) {
+    const auto n = std::ranges::count_if(sq_dist, [&](double sq) { return std::sqrt(sq) <= thresholds[t]; });
+    EXPECT_EQ(number(at_threshold(found, t), "n"), static_cast<double>(n)) << t;
+  }
 }
 
 }  // namespace

@@ -210,6 +210,12 @@ TEST(CheckReport, NamesThePlaceOfTheDamage) {
             "r.json: damaged report: metrics.chamfer has no \"value\"");
   EXPECT_EQ(refusal([](Json& r) { r["metrics"] = Json::array(); }),
             "r.json: damaged report: metrics is array, expected an object");
+  EXPECT_EQ(refusal([](Json& r) { r["intervals"] = nullptr; }),
+            "r.json: damaged report: intervals is null, expected an object");
+  EXPECT_EQ(refusal([](Json& r) {
+              r["intervals"] = {{"replicates", 10u}, {"seed", 1u}, {"level", "0.95"}, {"blocks", Json::object()}};
+            }),
+            "r.json: damaged report: intervals.level is string, expected a number");
 }
 
 TEST(CheckReport, RefusesWhatIsNoReport) {

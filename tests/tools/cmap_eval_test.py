@@ -374,7 +374,7 @@ class Results(CmapEval):
             broken("run", "threads", value=0),
             broken("metrics", "color_distance_by_range", "per_range", 0, "value", value="none"),
             broken("aliases", "open3d", "definition"),
-            broken("aliases", "lidar", value={"definition": "of no tool"}),
+            broken("aliases", "lidar", value={"value": 1.0}),
             broken("warnings", value=[{"id": "x"}]),
         ):
             with self.assertRaises(jsonschema.ValidationError):

@@ -45,9 +45,10 @@ struct Intervals {
 std::vector<Interval> bootstrap(const BlockSums& blocks, const MetricSettings& settings,
                                 const BootstrapOptions& options);
 
-/// The same for the difference b - a of two estimates on one reference: both are computed from the same drawn blocks,
-/// so that what is hard for both cancels. Throws std::invalid_argument where the blocks' sizes differ.
-std::vector<Interval> bootstrap_difference(const BlockSums& a, const BlockSums& b, const MetricSettings& settings,
-                                           const BootstrapOptions& options);
+/// The same for the difference b - a of two estimates on one reference, each with its own settings: both are computed
+/// from the same drawn blocks, so that what is hard for both cancels. Throws std::invalid_argument where the blocks'
+/// sizes differ.
+std::vector<Interval> bootstrap_difference(const BlockSums& a, const MetricSettings& settings_a, const BlockSums& b,
+                                           const MetricSettings& settings_b, const BootstrapOptions& options);
 
 }  // namespace cmap

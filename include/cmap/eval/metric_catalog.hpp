@@ -16,9 +16,8 @@ const MetricInfo* find_metric(std::string_view id_or_symbol);
 /// Which metrics the options ask for, and what these are computed from.
 struct MetricSelection {
   std::set<std::string_view> ids;
-  bool color_is_required = false;    ///< a color group or metric was named
-  bool needs_gaussians = false;      ///< AWD, SCS or MapEval's record
-  bool needs_neighborhoods = false;  ///< MME or MapEval's record
+  bool color_is_required = false;  ///< a color group or metric was named
+  bool needs_gaussians = false;    ///< AWD, SCS or MapEval's record
   bool contains(std::string_view id) const { return ids.contains(id); }
 };
 

@@ -27,7 +27,7 @@ struct EvaluationOptions : MetricOptions {
   std::vector<std::string> metrics;  ///< groups or metric ids; empty: color, geometry, distribution, as far as possible
   std::optional<double> voxel_m;     ///< thin both maps first
   std::optional<Box3d> crop;         ///< reference frame
-  std::vector<std::string> as;       ///< other tools, as peer_tools() names them
+  std::vector<std::string> as;       ///< other tools, as peer_names() has them
   std::uint64_t bootstrap = 0;       ///< replicates for confidence intervals; 0: none
   double block_m = 10.0;             ///< of the bootstrap
   Observed observed = Observed::kNone;
@@ -48,9 +48,6 @@ struct EvaluationOptions : MetricOptions {
 
 /// What of it decides how files are read.
 ReadOptions read_options(const EvaluationOptions& options, bool sha256 = false);
-
-/// The tools of `as`.
-const std::vector<std::string>& peer_tools();
 
 /// The threshold of Tanks and Temples: as given, else the largest of the thresholds.
 double tanks_and_temples_tau_m(const EvaluationOptions& options);

@@ -35,6 +35,7 @@ struct CaptureCalibration {
   CameraModel camera;
   Eigen::Isometry3d T_imu_lidar = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d T_lidar_camera = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d T_world_imu_start = Eigen::Isometry3d::Identity();  ///< where odometry begins
   /// Of images and of sessions' frames: recorded time + offset = time in the clock of the LiDAR.
   double image_time_offset_s = 0.0;
   double imu_time_offset_s = 0.0;  ///< likewise

@@ -10,7 +10,7 @@ struct MeanDistances {
 };
 MeanDistances mean_distances(std::span<const double> chamfer_sums);
 
-/// Harmonic mean 2PR / (P + R) of precision and recall; 0 when both are 0.
+/// Harmonic mean 2PR / (P + R) of precision and recall; 0 when both are 0, NaN when either is.
 double f_score(double precision, double recall);
 
 }  // namespace cmap

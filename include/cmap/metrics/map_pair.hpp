@@ -40,6 +40,9 @@ struct IndexedMap {
   double file_step_m;             ///< the cloud's
 };
 
+/// The map in its own order; colors as 8 bit.
+PointCloud cloud_of(const IndexedMap& map);
+
 /// One direction of the comparison: every point of `from` with its nearest point of `to`.
 struct NearestPairs {
   const IndexedMap& from;

@@ -75,6 +75,7 @@ struct MetricInputs {
   BothSides<std::optional<ColorConsistency>> color_consistency = {};
   std::optional<std::vector<GaussianPair>> gaussians = {};
   std::vector<VoxelDistance> wasserstein = {};  ///< of `gaussians`
+  std::vector<double> variations = {};          ///< of `wasserstein`: local_variations()
   BothSides<std::optional<NeighborhoodShape>> neighborhoods = {};
 };
 

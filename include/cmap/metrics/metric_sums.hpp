@@ -26,8 +26,9 @@ struct SpaceParts {
   std::function<std::uint32_t(const Eigen::Vector3d& world)> of_voxel = {};  ///< by its center; may add parts
 };
 
-/// One pass over either side's points serves all the metrics; each part's sum is exact until it is complete, so that
-/// neither threads nor chunks nor the order of points change a bit. `prepare` of each must have been called.
+/// One pass over either side's points serves all the metrics; each part's sum of a column is exact until it is
+/// complete, so that neither threads nor chunks nor the order of points change a bit; sums over parts, and over bands
+/// of distances, are added in double in their order. `prepare` of each must have been called.
 MetricSums sum_metrics(std::span<const Metric* const> metrics, const MetricInputs& inputs, SpaceParts parts = {});
 
 /// A metric's value, or one of its values.

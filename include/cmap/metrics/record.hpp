@@ -38,10 +38,13 @@ struct Record {
 
   /// The list of that name, empty if there is none.
   const std::vector<Record>& list(std::string_view name) const&;
-  std::vector<Record>& list(std::string_view name) &;
-  std::vector<Record> list(std::string_view name) && { return list(name); }  ///< of a record that does not stay
+  std::vector<Record>& list_to_change(std::string_view name);  ///< throws std::out_of_range if there is none
+  std::vector<Record> list(std::string_view name) && {
+    return std::as_const(*this).list(name);
+  }  ///< of a record that does not stay
   /// The part of that name, nullptr if there is none.
   const Record* part(std::string_view name) const;
+  Record& part_to_change(std::string_view name);  ///< throws std::out_of_range if there is none
   /// The number at "value", "name", "part.name" or "list.3.name"; nullopt where there is none, NaN where it is missing.
   std::optional<double> number(std::string_view path) const;
 };

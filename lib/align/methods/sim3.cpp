@@ -29,8 +29,9 @@ Alignment run_sim3(const PointCloud& source, const PointCloud& target, const Ali
   const Sim3Alignment result = sim3_icp(source, target, options.T_initial, sim3);
   if (!result.accepted) {
     // Whoever asks for an alignment has no use for the start.
-    const std::string& why = result.warnings.back();
-    throw UnsupportedError(why.substr(why.find(": ") + 2));
+    const std::string why = result.warnings.empty() ? "no alignment was found" : result.warnings.back();
+    const std::size_t colon = why.find(": ");
+    throw UnsupportedError(colon == why.npos ? why : why.substr(colon + 2));
   }
   return settle_on_surfaces(source, target, result);
 }

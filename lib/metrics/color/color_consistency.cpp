@@ -123,7 +123,7 @@ extern constinit const Metric color_consistency{
           warn_of_singletons(o, found, warnings);
           add_rest(record, found, inputs.estimate);
           if (inputs.pair == nullptr) return;
-          add_rest(record.parts[0].record, *inputs.color_consistency.reference, inputs.pair->reference);
+          add_rest(record.part_to_change("reference"), *inputs.color_consistency.reference, inputs.pair->reference);
         }};
 
 }  // namespace catalog

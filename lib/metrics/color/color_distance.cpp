@@ -52,11 +52,7 @@ extern constinit const Metric color_distance{
         },
     .finish =
         [](Record& record, const MetricInputs& inputs, std::span<const double>, std::vector<Warning>& warnings) {
-          if (std::isnan(*record.value)) {
-            warnings.push_back({"color_distance_no_pairs",
-                                "no pair of nearest points counts in both directions (both need a color, within "
-                                "color-max-distance): no color distance"});
-          }
+          warn_of_no_pairs(record, warnings);
           const MapPair& pair = *inputs.pair;
           add_without_color(record, inputs);
           if (!inputs.options().color_max_distance_m && !record.number("n_without_color_estimate")) return;

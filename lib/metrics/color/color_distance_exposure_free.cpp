@@ -52,7 +52,8 @@ extern constinit const Metric color_distance_exposure_free{
           return record;
         },
     .finish =
-        [](Record& record, const MetricInputs& inputs, std::span<const double>, std::vector<Warning>&) {
+        [](Record& record, const MetricInputs& inputs, std::span<const double>, std::vector<Warning>& warnings) {
+          warn_of_no_pairs(record, warnings);
           const Eigen::Vector3d& gain = inputs.gains->gain;
           record.add("gains", std::vector{gain.x(), gain.y(), gain.z()});
           record.add("n_pairs", inputs.gains->n_pairs);

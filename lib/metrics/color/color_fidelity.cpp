@@ -21,6 +21,7 @@ extern constinit const Metric color_fidelity{
         },
     .finish =
         [](Record& record, const MetricInputs&, std::span<const double>, std::vector<Warning>& warnings) {
+          warn_of_no_pairs(record, warnings);
           if (!std::isinf(*record.value)) return;
           warnings.push_back(
               {"color_fidelity_infinite", "every color is exact: color fidelity is infinite, which is null in JSON"});

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
+#include "cmap/core/warning.hpp"
 #include "cmap/metrics/metric_inputs.hpp"
 #include "cmap/metrics/record.hpp"
 
@@ -13,6 +15,15 @@ inline void add_without_color(Record& record, const MetricInputs& inputs) {
   if (pair.estimate.n_without_color + pair.reference.n_without_color == 0) return;
   record.add("n_without_color_estimate", pair.estimate.n_without_color);
   record.add("n_without_color_reference", pair.reference.n_without_color);
+}
+
+/// Said once, whichever of the color distances is asked for.
+inline void warn_of_no_pairs(const Record& record, std::vector<Warning>& warnings) {
+  constexpr const char* kId = "color_distance_no_pairs";
+  if (!std::isnan(*record.value) || std::ranges::count(warnings, kId, &Warning::id) > 0) return;
+  warnings.push_back({kId,
+                      "no pair of nearest points counts in both directions (both need a color, within "
+                      "color-max-distance): no color distance"});
 }
 
 /// The farthest distance of pairs whose colors are compared.

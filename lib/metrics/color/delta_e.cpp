@@ -75,8 +75,8 @@ extern constinit const Metric delta_e{
         },
     .finish =
         [](Record& record, const MetricInputs& inputs, std::span<const double>, std::vector<Warning>&) {
-          add_quantiles(record.parts[0].record, inputs.delta_e.estimate);
-          add_quantiles(record.parts[1].record, inputs.delta_e.reference);
+          add_quantiles(record.part_to_change("estimate_to_reference"), inputs.delta_e.estimate);
+          add_quantiles(record.part_to_change("reference_to_estimate"), inputs.delta_e.reference);
           add_without_color(record, inputs);
         }};
 

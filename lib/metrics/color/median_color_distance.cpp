@@ -1,6 +1,7 @@
 #include <array>
 #include <cmath>
 
+#include "cmap/core/parallel.hpp"
 #include "cmap/metrics/metric.hpp"
 #include "cmap/metrics/order_statistics.hpp"
 #include "metrics/color/color_fields.hpp"
@@ -10,11 +11,11 @@ namespace {
 
 /// Over the pairs that have both colors; NaN of none.
 double median_distance(const NearestPairs& pairs) {
-  std::vector<double> distances;
-  for (std::size_t slot = 0; slot < pairs.size(); ++slot) {
-    const double distance = pairs.color_distance(slot);
-    if (!std::isnan(distance)) distances.push_back(distance);
-  }
+  std::vector<double> distances(pairs.size());
+  parallel_chunks(pairs.size(), kLoopChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t slot = begin; slot < end; ++slot) distances[slot] = pairs.color_distance(slot);
+  });
+  std::erase_if(distances, [](double d) { return std::isnan(d); });
   return quantiles(distances, std::array{0.5}).front();
 }
 

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include "cmap/metrics/metric.hpp"
 #include "cmap/metrics/order_statistics.hpp"
 #include "metrics/distribution/wasserstein_field.hpp"
@@ -57,12 +55,7 @@ extern constinit const Metric average_wasserstein{
         },
     .finish =
         [](Record& record, const MetricInputs& inputs, std::span<const double>, std::vector<Warning>& warnings) {
-          const MetricOptions& o = inputs.options();
-          if (inputs.wasserstein.empty()) {
-            warnings.push_back({"average_wasserstein_no_voxels",
-                                fmt::format("no {} m voxel holds {} points of both maps: no AWD and no SCS",
-                                            o.awd_voxel_m, o.awd_min_points)});
-          }
+          warn_of_no_voxels(inputs, warnings);
           add_distribution(record, inputs.wasserstein);
         }};
 

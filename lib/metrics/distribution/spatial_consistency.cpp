@@ -14,7 +14,12 @@ extern constinit const Metric spatial_consistency{
              .better = "lower",
              .definition = "How unevenly the Wasserstein distances are spread: standard deviation over mean among "
                            "neighboring voxels, averaged."},
-    .prepare = prepare_wasserstein,
+    .prepare =
+        [](MetricInputs& inputs) {
+          prepare_wasserstein(inputs);
+          inputs.variations =
+              local_variations(inputs.wasserstein, static_cast<int>(inputs.options().scs_radius_voxels));
+        },
     .sides = Sides::kEstimate,
     .columns =
         [](const MetricSettings&) {
@@ -22,13 +27,11 @@ extern constinit const Metric spatial_consistency{
         },
     .each_voxel =
         [](const MetricInputs& inputs, Side, const std::function<void(const VoxelTerms&)>& use) {
-          const MetricOptions& o = inputs.options();
-          const std::vector<double> variations =
-              local_variations(inputs.wasserstein, static_cast<int>(o.scs_radius_voxels));
+          const std::vector<double>& variations = inputs.variations;
           for (std::size_t i = 0; i < variations.size(); ++i) {
             if (std::isnan(variations[i])) continue;
             const double terms[]{1.0, variations[i]};
-            use({inputs.wasserstein[i].index, o.awd_voxel_m, terms});
+            use({inputs.wasserstein[i].index, inputs.options().awd_voxel_m, terms});
           }
         },
     .value =
@@ -40,6 +43,7 @@ extern constinit const Metric spatial_consistency{
         },
     .finish =
         [](Record& record, const MetricInputs& inputs, std::span<const double>, std::vector<Warning>& warnings) {
+          warn_of_no_voxels(inputs, warnings);
           if (!std::isnan(*record.value) || inputs.wasserstein.empty()) return;
           warnings.push_back({"spatial_consistency_no_voxels",
                               "no voxel has other voxels at a Wasserstein distance above 0 around it: no SCS"});

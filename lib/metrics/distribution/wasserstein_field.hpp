@@ -1,5 +1,10 @@
 #pragma once
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cmap/core/warning.hpp"
 #include "cmap/metrics/metric_inputs.hpp"
 #include "cmap/metrics/record.hpp"
 
@@ -11,6 +16,14 @@ inline void prepare_wasserstein(MetricInputs& inputs) {
   const MetricOptions& o = inputs.options();
   inputs.gaussians = gaussian_pairs(*inputs.pair, o.awd_voxel_m, o.awd_min_points);
   inputs.wasserstein = wasserstein_distances(*inputs.gaussians);
+}
+
+/// Said once, whichever of the two metrics is asked for.
+inline void warn_of_no_voxels(const MetricInputs& inputs, std::vector<Warning>& warnings) {
+  constexpr const char* kId = "average_wasserstein_no_voxels";
+  if (!inputs.wasserstein.empty() || std::ranges::count(warnings, kId, &Warning::id) > 0) return;
+  warnings.push_back({kId, fmt::format("no {} m voxel holds {} points of both maps: no AWD and no SCS",
+                                       inputs.options().awd_voxel_m, inputs.options().awd_min_points)});
 }
 
 inline std::vector<Number> wasserstein_parameters(const MetricOptions& options) {

@@ -60,7 +60,7 @@ extern constinit const Metric accuracy{
         },
     .finish =
         [](Record& record, const MetricInputs&, std::span<const double> medians, std::vector<Warning>&) {
-          std::vector<Record>& levels = record.list("per_threshold");
+          std::vector<Record>& levels = record.list_to_change("per_threshold");
           for (std::size_t t = 0; t < levels.size(); ++t) levels[t].add("median", medians[t]);
         }};
 

@@ -5,25 +5,25 @@
 #include <numeric>
 
 namespace cmap {
-namespace {
-
-double total(std::span<const double> values) { return std::accumulate(values.begin(), values.end(), 0.0); }
-
-}  // namespace
-
 std::vector<std::string> band_columns(const MetricSettings& settings, const std::string& name) {
   std::vector<std::string> names;
-  for (const double upper_m : settings.bands.upper_m()) names.push_back(fmt::format("{}<={}", name, upper_m));
-  names.push_back(name + " beyond");
+  double lower_m = 0.0;
+  for (const double upper_m : settings.bands.upper_m()) {
+    names.push_back(fmt::format("{} {}..{}", name, lower_m, upper_m));
+    lower_m = upper_m;
+  }
+  names.push_back(fmt::format("{} {}..", name, lower_m));
   return names;
 }
 
+double sum_of_bands(std::span<const double> sums) { return std::accumulate(sums.begin(), sums.end(), 0.0); }
+
 double sum_within(std::span<const double> sums, const MetricSettings& settings, double threshold_m, std::size_t first) {
-  return total(sums.subspan(first, settings.bands.n_within(threshold_m)));
+  return sum_of_bands(sums.subspan(first, settings.bands.n_within(threshold_m)));
 }
 
 double share_within(std::span<const double> counts, const MetricSettings& settings, double threshold_m) {
-  return sum_within(counts, settings, threshold_m) / total(counts);
+  return sum_within(counts, settings, threshold_m) / sum_of_bands(counts);
 }
 
 Record shares_record(std::span<const double> counts, const MetricSettings& settings) {
@@ -34,7 +34,7 @@ Record shares_record(std::span<const double> counts, const MetricSettings& setti
     level.add("n", static_cast<std::uint64_t>(sum_within(counts, settings, threshold_m)));
   }
   Record record;
-  record.add("n_points", static_cast<std::uint64_t>(total(counts)));
+  record.add("n_points", static_cast<std::uint64_t>(sum_of_bands(counts)));
   return record.add("per_threshold", std::move(levels));
 }
 

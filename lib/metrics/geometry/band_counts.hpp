@@ -7,8 +7,11 @@
 
 namespace cmap {
 
-/// Names of columns of which there is one for each band of distances: "n<=0.1", and at last "n beyond".
+/// Names of columns of which there is one for each band of distances: "n 0.05..0.1", and at last "n 1..".
 std::vector<std::string> band_columns(const MetricSettings& settings, const std::string& name);
+
+/// Over all bands.
+double sum_of_bands(std::span<const double> sums);
 
 /// Over the bands within a threshold: of a metric whose columns from `first` on are one for each band.
 double sum_within(std::span<const double> sums, const MetricSettings& settings, double threshold_m,

@@ -5,7 +5,8 @@
 namespace cmap {
 
 double f_score(double precision, double recall) {
-  return precision + recall > 0.0 ? 2.0 * precision * recall / (precision + recall) : 0.0;
+  const double sum = precision + recall;  // NaN where either is
+  return sum == 0.0 ? 0.0 : 2.0 * precision * recall / sum;
 }
 
 namespace catalog {

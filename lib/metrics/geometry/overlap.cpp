@@ -1,5 +1,3 @@
-#include <numeric>
-
 #include "cmap/metrics/catalog.hpp"
 #include "metrics/geometry/band_counts.hpp"
 
@@ -23,8 +21,7 @@ extern constinit const Metric overlap{
       const double share = share_within(sums.estimate, settings, distance_m);
       Record record{.value = share, .parameters = {{"overlap_distance_m", distance_m}}};
       record.add("n", static_cast<std::uint64_t>(n));
-      return record.add("n_estimate",
-                        static_cast<std::uint64_t>(std::accumulate(sums.estimate.begin(), sums.estimate.end(), 0.0)));
+      return record.add("n_estimate", static_cast<std::uint64_t>(sum_of_bands(sums.estimate)));
     }};
 
 }  // namespace cmap::catalog

@@ -1,19 +1,9 @@
 #include <cmath>
-#include <numeric>
 
 #include "cmap/metrics/catalog.hpp"
 #include "metrics/geometry/band_counts.hpp"
 
 namespace cmap {
-namespace {
-
-double sum_of_bands(std::span<const double> sums, std::size_t first, std::size_t n) {
-  const auto bands = sums.subspan(first, n);
-  return std::accumulate(bands.begin(), bands.end(), 0.0);
-}
-
-}  // namespace
-
 namespace catalog {
 
 extern constinit const Metric rmse{
@@ -29,9 +19,9 @@ extern constinit const Metric rmse{
     .value = [](const PairSums& sums, const MetricSettings& settings) {
       const std::size_t n_bands = settings.bands.size();
       const double distance_m = settings.options.overlap_distance_m;
-      const double n = sum_of_bands(sums.estimate, 0, n_bands);
+      const double n = sum_of_bands(sums.estimate.first(n_bands));
       const double n_inliers = sum_within(sums.estimate, settings, distance_m);
-      Record record{.value = std::sqrt(sum_of_bands(sums.estimate, 2 * n_bands, n_bands) / n),
+      Record record{.value = std::sqrt(sum_of_bands(sums.estimate.subspan(2 * n_bands)) / n),
                     .parameters = {{"overlap_distance_m", distance_m}}};
       const double inlier_squares = sum_within(sums.estimate, settings, distance_m, 2 * n_bands);
       record.add("inlier_rmse", std::sqrt(inlier_squares / n_inliers));

@@ -73,7 +73,9 @@ std::optional<ScoreTable> gain_interval_table(const std::vector<SavedReport>& re
     if (i == baseline) continue;
     const BlockSums blocks = block_sums_from(reports[i].json.at("intervals").at("blocks"));
     if (blocks.block_m != base_blocks.block_m) return std::nullopt;
-    const std::vector<Interval> differences = bootstrap_difference(base_blocks, blocks, settings, options);
+    const std::vector<Interval> differences =
+        bootstrap_difference(base_blocks, settings, blocks, settings_of(reports[i]), options);
+    if (differences.empty()) return std::nullopt;  // sums of an earlier version
     table.value_columns.push_back(comparison.names[i]);
     for (std::size_t row = 0; row < comparison.kinds.size(); ++row) {
       table.rows[row].cells.push_back(cell_for(comparison.kinds[row], differences));

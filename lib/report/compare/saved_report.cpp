@@ -135,6 +135,12 @@ void check_report(const Json& report, const std::string& source) {
     check_record(record);
     if (record.has("curve")) check_curve(record["curve"]);
   }
+  if (top.has("intervals")) {
+    const Place intervals = top["intervals"];
+    for (const char* count : {"replicates", "seed"}) intervals[count].be_count();
+    intervals["level"].be_number();
+    intervals["blocks"].be_object();
+  }
 }
 
 SavedReport read_report(const fs::path& path) {
