@@ -1,5 +1,5 @@
 # What is installed, in two parts: `programs`, and `development` for find_package(cmap), with the modules that this build
-# has: cmap::core, io, spatial, metrics, align, eval and report, and, where Ceres was found, graph and recon. The libraries
+# has: cmap::core, io, spatial, metrics, align, peers, eval and report, and, where Ceres was found, graph and recon. The libraries
 # are static.
 include(CMakePackageConfigHelpers)
 
