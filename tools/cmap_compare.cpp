@@ -35,7 +35,7 @@ constexpr const char* kExample =
     "Formats: text (* best, + second best), markdown, csv (all digits, empty where there is no value), latex\n"
     "(booktabs, graphicx, xcolor; shrunk to the column where it is wider), html (one file, sortable, offline).\n"
     "Exit codes: 0 done; 2 wrong usage, no reports, or reports that do not compare; 3 a report is missing or damaged;\n"
-    "70 internal error.";
+    "4 this build has no pictures but .svg; 70 internal error.";
 
 struct Arguments {
   std::vector<std::string> reports;

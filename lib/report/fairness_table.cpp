@@ -12,7 +12,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string line(const MetricInfo& info, const std::string& title, const std::string& value) {
-  return fmt::format("  {} {} {} {}\n", padded(title, 30), padded(info.symbol, 10), value, shown_unit(info));
+  const std::string text =
+      fmt::format("  {} {} {} {}", padded(title, 30), padded(info.symbol, 10), value, shown_unit(info));
+  return text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
 }
 
 std::string span_text(const MetricInfo& info, const Json& from, const Json& to) {
