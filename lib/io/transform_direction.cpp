@@ -1,5 +1,7 @@
 // Names of matrices that say which way they map.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -60,6 +62,13 @@ bool names_reference_to_estimate(std::string_view name) {
     if (is_transform(a) && is_estimate(b) && is_reference(c)) return true;
   }
   return false;
+}
+
+std::string reference_to_estimate_error(std::string_view name, std::string_view how_to_invert) {
+  return fmt::format(
+      "the name '{}' says that the matrix maps the reference to the estimate, but it is the estimate that moves: give "
+      "its inverse ({})",
+      name, how_to_invert);
 }
 
 }  // namespace cmap

@@ -85,14 +85,11 @@ void require_direction(const FoundMatrix& matrix, const Json& json) {
   const std::string name = matrix.place.substr(matrix.place.rfind('.') + 1);
   if (!names_reference_to_estimate(name)) return;
   const bool is_simple = name == matrix.place && json.is_object() && matrix.numbers.rows.size() == 4;
-  throw UsageError(fmt::format(
-      "the name '{}' says that the matrix maps the reference to the estimate, but it is the estimate that moves: give "
-      "its inverse{}",
-      matrix.place,
-      is_simple ? fmt::format(" (python3 -c \"import json, numpy; numpy.savetxt('T_ref_est.txt', "
-                              "numpy.linalg.inv(json.load(open('FILE'))['{}']))\" writes it)",
-                              name)
-                : " (numpy.linalg.inv)"));
+  throw UsageError(reference_to_estimate_error(
+      matrix.place, is_simple ? fmt::format("python3 -c \"import json, numpy; numpy.savetxt('T_ref_est.txt', "
+                                            "numpy.linalg.inv(json.load(open('FILE'))['{}']))\" writes it",
+                                            name)
+                              : "numpy.linalg.inv"));
 }
 
 TransformNumbers only_matrix(const Json& json) {

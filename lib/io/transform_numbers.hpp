@@ -29,6 +29,9 @@ TransformNumbers transform_from_npy(ByteSource& source);
 /// as every transform here does, the estimate to the reference.
 bool names_reference_to_estimate(std::string_view name);
 
+/// Why such a matrix is refused, and what helps.
+std::string reference_to_estimate_error(std::string_view name, std::string_view how_to_invert);
+
 /// The transform of a whole source (see read_transform).
 TransformFile parse_transform(ByteSource& source);
 

@@ -98,10 +98,7 @@ class PrintedMatrix {
     const bool is_label = next != std::string_view::npos && (rest[next] == '=' || rest[next] == ':');
     const bool is_known = std::find(kWords.begin(), kWords.end(), token) != kWords.end();
     if (is_label && names_reference_to_estimate(token)) {
-      lines_.fail(
-          "the name '{}' says that the matrix maps the reference to the estimate, but it is the estimate that "
-          "moves: give its inverse (numpy.linalg.inv)",
-          token.substr(0, 40));
+      lines_.fail("{}", reference_to_estimate_error(token.substr(0, 40), "numpy.linalg.inv"));
     }
     if (!is_known && !(is_word(token) && is_label)) lines_.fail("'{}' is not a number", token.substr(0, 40));
   }

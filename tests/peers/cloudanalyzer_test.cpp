@@ -1,19 +1,16 @@
 #include "cmap/peers/cloudanalyzer.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <numbers>
 
-#include "metrics/measured.hpp"
+#include "peers/peers_testing.hpp"
 
 namespace cmap {
 namespace {
 
-using Doubles = std::vector<double>;
-
-const Eigen::Vector3d kZero = Eigen::Vector3d::Zero();
-
-Eigen::Matrix3d diagonal(double a, double b, double c) { return Eigen::Vector3d(a, b, c).asDiagonal(); }
+using test::diagonal;
+using test::Doubles;
+using test::kZero;
 
 TEST(CloudAnalyzer, CurveByHand) {
   // Thresholds 0.05, 0.1, 0.2, 0.3, 0.5, 1: F is 0, then 2/3 from 0.3 on (P 1/2, R 1), inclusive.

@@ -1,22 +1,13 @@
 #include "cmap/peers/cloudcompare.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
-#include <numbers>
 
-#include "metrics/measured.hpp"
+#include "peers/peers_testing.hpp"
 
 namespace cmap {
 namespace {
 
-using Doubles = std::vector<double>;
-
-Doubles random_squares(std::size_t n) {
-  std::mt19937_64 random(1);
-  Doubles sq_dist(n);
-  for (double& sq : sq_dist) sq = std::pow(test::uniform(random), 4.0);
-  return sq_dist;
-}
+using test::Doubles;
 
 TEST(CloudCompareDistance, HandComputed) {
   const CloudCompareDistance found = cloudcompare_distance(Doubles{1.0, 9.0});
@@ -30,7 +21,7 @@ TEST(CloudCompareDistance, StoresDistancesAsFloats) {
 }
 
 TEST(CloudCompareDistance, EqualsTheDefinition) {
-  const Doubles sq_dist = random_squares(5000);
+  const Doubles sq_dist = test::peer_squares(5000);
   double mean = 0.0, variance = 0.0;
   for (double sq : sq_dist) mean += std::sqrt(sq) / 5000.0;
   for (double sq : sq_dist) variance += (std::sqrt(sq) - mean) * (std::sqrt(sq) - mean) / 5000.0;

@@ -1,19 +1,16 @@
 #include "cmap/peers/mapeval.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <numbers>
 
-#include "metrics/measured.hpp"
+#include "peers/peers_testing.hpp"
 
 namespace cmap {
 namespace {
 
-using Doubles = std::vector<double>;
-
-const Eigen::Vector3d kZero = Eigen::Vector3d::Zero();
-
-Eigen::Matrix3d diagonal(double a, double b, double c) { return Eigen::Vector3d(a, b, c).asDiagonal(); }
+using test::diagonal;
+using test::Doubles;
+using test::kZero;
 
 double mapeval_distance(const Gaussian& reference, const Gaussian& estimate) {
   return mapeval_wasserstein_distances(std::vector<GaussianPair>{{{1, 2, 3}, reference, estimate}}).front().distance_m;
@@ -23,13 +20,6 @@ double mapeval_distance(const Gaussian& reference, const Gaussian& estimate) {
 Gaussian mapeval_gaussian(std::uint64_t n, const Eigen::Vector3d& mean, const Eigen::Matrix3d& covariance) {
   const auto m = static_cast<double>(n - 1);
   return {n, mean, covariance * (n > 10 ? m * m * m : m)};
-}
-
-Doubles random_squares(std::size_t n) {
-  std::mt19937_64 random(1);
-  Doubles sq_dist(n);
-  for (double& sq : sq_dist) sq = std::pow(test::uniform(random), 4.0);
-  return sq_dist;
 }
 
 TEST(MapEvalAccuracy, HandComputed) {
@@ -56,7 +46,7 @@ TEST(MapEvalAccuracy, WithoutCorrespondencesIsMissing) {
 }
 
 TEST(MapEvalAccuracy, IsOursDeflatedByTheShareOfInliers) {
-  const Doubles sq_dist = random_squares(5000);
+  const Doubles sq_dist = test::peer_squares(5000);
   const Doubles thresholds{0.05, 0.1, 0.2};
   const MapEvalAccuracy theirs = mapeval_accuracy(sq_dist, thresholds, 0.5);
   const MapPair pair = test::pair_with(Array<double>(sq_dist.begin(), sq_dist.end()));

@@ -1,22 +1,13 @@
 #include "cmap/peers/open3d.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
-#include <numbers>
 
-#include "metrics/measured.hpp"
+#include "peers/peers_testing.hpp"
 
 namespace cmap {
 namespace {
 
-using Doubles = std::vector<double>;
-
-Doubles random_squares(std::size_t n) {
-  std::mt19937_64 random(1);
-  Doubles sq_dist(n);
-  for (double& sq : sq_dist) sq = std::pow(test::uniform(random), 4.0);
-  return sq_dist;
-}
+using test::Doubles;
 
 TEST(Open3dRegistration, HandComputed) {
   const Doubles sq_dist{0.0, 0.25, 1.0, 4.0};
@@ -35,7 +26,7 @@ TEST(Open3dRegistration, WithoutInliersIsZeroLikeTheTool) {
 }
 
 TEST(Open3dRegistration, IsOursWhereNoDistanceIsTheThreshold) {
-  const Doubles sq_dist = random_squares(5000);
+  const Doubles sq_dist = test::peer_squares(5000);
   for (double threshold_m : {0.05, 0.1, 0.7}) {
     const Open3dRegistration theirs = open3d_registration(sq_dist, threshold_m);
     const MapPair pair = test::pair_with(Array<double>(sq_dist.begin(), sq_dist.end()));

@@ -42,8 +42,8 @@ struct PointRun {
   Side side;
   std::size_t begin = 0, size = 0;                        ///< slots
   std::span<const double> distance_m = {}, sq_dist = {};  ///< of the nearest point of the other map; empty without one
-  std::span<const double> color_distance =
-      {};  ///< to it, unit RGB; NaN where either has no color; empty without colors
+  /// To it, unit RGB; NaN where either has no color; empty without colors.
+  std::span<const double> color_distance = {};
   /// The distances ordered by band: those of band b are at band_begin[b] to band_begin[b + 1].
   std::span<const std::size_t> band_begin = {};
   std::span<const double> banded_distance_m = {}, banded_sq_dist = {};

@@ -39,9 +39,8 @@ struct Record {
   /// The list of that name, empty if there is none.
   const std::vector<Record>& list(std::string_view name) const&;
   std::vector<Record>& list_to_change(std::string_view name);  ///< throws std::out_of_range if there is none
-  std::vector<Record> list(std::string_view name) && {
-    return std::as_const(*this).list(name);
-  }  ///< of a record that does not stay
+  /// Of a record that does not stay.
+  std::vector<Record> list(std::string_view name) && { return std::as_const(*this).list(name); }
   /// The part of that name, nullptr if there is none.
   const Record* part(std::string_view name) const;
   Record& part_to_change(std::string_view name);  ///< throws std::out_of_range if there is none

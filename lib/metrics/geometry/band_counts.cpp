@@ -5,6 +5,7 @@
 #include <numeric>
 
 namespace cmap {
+
 std::vector<std::string> band_columns(const MetricSettings& settings, const std::string& name) {
   std::vector<std::string> names;
   double lower_m = 0.0;
