@@ -1,6 +1,6 @@
 # What is installed, in two parts: `programs`, and `development` for find_package(cmap), with the modules that this build
-# has: cmap::core, io, spatial, metrics, align, peers, eval and report, and, where Ceres was found, graph and recon. The libraries
-# are static.
+# has: cmap::core, geometry, io, spatial, metrics, align, peers, eval, report and board, and, where Ceres was found, graph and recon.
+# The libraries are static.
 include(CMakePackageConfigHelpers)
 
 set(CMAP_INSTALL_CMAKEDIR ${CMAKE_INSTALL_LIBDIR}/cmake/cmap)

@@ -10,7 +10,8 @@ function(cmap_set_compile_options target)
   endif()
 endfunction()
 
-# cmap_add_library(name SOURCES a.cpp ... [PUBLIC lib ...] [PRIVATE lib ...]) makes cmap::<name>, for our own programs.
+# cmap_add_library(name SOURCES a.cpp ... [PUBLIC lib ...] [PRIVATE lib ...]) makes cmap::<name>, for our own programs. It sees
+# the public headers of all modules and the private ones of its own folder.
 function(cmap_add_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   # Programs are called cmap_<name>; some share their name with a module.
@@ -20,7 +21,7 @@ function(cmap_add_library name)
   cmap_set_compile_options(${target})
   target_include_directories(${target}
     PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
-    PRIVATE ${PROJECT_SOURCE_DIR}/lib)
+    PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} OUTPUT_NAME cmap_${name}
     POSITION_INDEPENDENT_CODE ON)
@@ -54,7 +55,7 @@ function(cmap_add_tests module)
   if(NOT TARGET ${target})
     add_executable(${target})
     cmap_set_compile_options(${target})
-    target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests ${PROJECT_SOURCE_DIR}/lib)
+    target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests ${PROJECT_SOURCE_DIR}/lib/${module})
     target_link_libraries(${target} PRIVATE cmap::${module} cmap_test_main)
     # Test files name their helpers as they like.
     set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)

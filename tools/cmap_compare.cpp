@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <map>
 
+#include "cmap/board/comparison.hpp"
 #include "cmap/core/error.hpp"
 #include "cmap/io/output_file.hpp"
-#include "cmap/report/comparison.hpp"
 #include "files.hpp"
 #include "program.hpp"
 

@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <optional>
 
+#include "cmap/board/leaderboard.hpp"
 #include "cmap/core/parallel.hpp"
 #include "cmap/core/progress.hpp"
-#include "cmap/report/leaderboard.hpp"
 #include "files.hpp"
 #include "program.hpp"
 

@@ -11,7 +11,7 @@
 #include <filesystem>
 
 #include "cmap/align/icp.hpp"
-#include "cmap/align/similarity.hpp"
+#include "cmap/geometry/similarity.hpp"
 #include "cmap/io/point_cloud_file.hpp"
 #include "cmap/io/transform_file.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <nanoflann.hpp>
 
-#include "cmap/core/point_cloud.hpp"
+#include "cmap/geometry/point_cloud.hpp"
 
 namespace cmap::benchmarks {
 

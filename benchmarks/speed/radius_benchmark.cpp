@@ -5,7 +5,7 @@
 
 #include <Eigen/LU>
 
-#include "cmap/core/color.hpp"
+#include "cmap/geometry/color.hpp"
 #include "cmap/metrics/catalog.hpp"
 #include "cmap/metrics/local_color_recall.hpp"
 #include "cmap/metrics/metric_sums.hpp"

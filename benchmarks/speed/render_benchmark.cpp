@@ -23,7 +23,7 @@
 #include <vtkUnsignedCharArray.h>
 
 #include "cmap/gl/splat_gl.hpp"
-#include "gl/egl_window.hpp"
+#include "egl_window.hpp"
 
 VTK_MODULE_INIT(vtkRenderingOpenGL2)
 #endif

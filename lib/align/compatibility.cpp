@@ -1,4 +1,4 @@
-#include "align/compatibility.hpp"
+#include "compatibility.hpp"
 
 #include <algorithm>
 #include <bit>

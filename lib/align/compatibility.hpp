@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "cmap/align/similarity.hpp"
+#include "cmap/geometry/similarity.hpp"
 
 namespace cmap {
 

@@ -1,4 +1,4 @@
-#include "align/direction_text.hpp"
+#include "direction_text.hpp"
 
 #include <fmt/format.h>
 

@@ -1,11 +1,11 @@
-#include "align/features.hpp"
+#include "features.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "cmap/core/loaded_module.hpp"
 #include "cmap/core/parallel.hpp"
-#include "core/loaded_module.hpp"
 
 namespace cmap {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cmap/core/array.hpp"
-#include "cmap/core/point_cloud.hpp"
+#include "cmap/geometry/point_cloud.hpp"
 
 namespace cmap {
 

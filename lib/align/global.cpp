@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "align/compatibility.hpp"
-#include "align/features.hpp"
-#include "align/registration_cloud.hpp"
 #include "cmap/align/icp.hpp"
 #include "cmap/align/umeyama.hpp"
 #include "cmap/core/error.hpp"
+#include "compatibility.hpp"
+#include "features.hpp"
+#include "registration_cloud.hpp"
 
 namespace cmap {
 namespace {

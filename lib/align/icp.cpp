@@ -7,11 +7,11 @@
 #include <cmath>
 #include <optional>
 
-#include "align/registration_cloud.hpp"
-#include "align/require.hpp"
 #include "cmap/align/umeyama.hpp"
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
+#include "registration_cloud.hpp"
+#include "require.hpp"
 
 namespace cmap {
 namespace {

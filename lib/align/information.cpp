@@ -1,11 +1,11 @@
-#include "align/information.hpp"
+#include "information.hpp"
 
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "align/direction_text.hpp"
+#include "direction_text.hpp"
 
 namespace cmap {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "cmap/align/alignment.hpp"
-#include "cmap/align/similarity.hpp"
+#include "cmap/geometry/similarity.hpp"
 
 namespace cmap {
 

@@ -1,4 +1,4 @@
-#include "align/moving_source.hpp"
+#include "moving_source.hpp"
 
 #include "cmap/core/parallel.hpp"
 

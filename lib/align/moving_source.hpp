@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cmap/align/similarity.hpp"
+#include "cmap/geometry/similarity.hpp"
 #include "cmap/spatial/bvh.hpp"
 #include "cmap/spatial/nearest.hpp"
 

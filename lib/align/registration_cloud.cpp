@@ -1,4 +1,4 @@
-#include "align/registration_cloud.hpp"
+#include "registration_cloud.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include "cmap/align/umeyama.hpp"
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
-#include "cmap/spatial/voxel_map.hpp"
+#include "cmap/geometry/voxel_map.hpp"
 
 namespace cmap {
 namespace {

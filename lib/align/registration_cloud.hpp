@@ -1,9 +1,9 @@
 #pragma once
 
-#include "align/information.hpp"
-#include "align/moving_source.hpp"
-#include "align/surface.hpp"
 #include "cmap/align/alignment.hpp"
+#include "information.hpp"
+#include "moving_source.hpp"
+#include "surface.hpp"
 
 namespace cmap {
 

@@ -7,12 +7,12 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "align/registration_cloud.hpp"
-#include "align/require.hpp"
 #include "cmap/align/umeyama.hpp"
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
-#include "cmap/spatial/voxel_map.hpp"
+#include "cmap/geometry/voxel_map.hpp"
+#include "registration_cloud.hpp"
+#include "require.hpp"
 
 namespace cmap {
 namespace {

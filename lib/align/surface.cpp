@@ -1,4 +1,4 @@
-#include "align/surface.hpp"
+#include "surface.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

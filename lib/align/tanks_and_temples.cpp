@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "align/registration_cloud.hpp"
 #include "cmap/align/umeyama.hpp"
 #include "cmap/core/error.hpp"
+#include "registration_cloud.hpp"
 
 namespace cmap {
 namespace {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <string>
 
-#include "align/information.hpp"
 #include "cmap/core/error.hpp"
+#include "information.hpp"
 
 namespace cmap {
 namespace {

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "align/direction_text.hpp"
 #include "cmap/core/error.hpp"
+#include "direction_text.hpp"
 
 namespace cmap {
 namespace {

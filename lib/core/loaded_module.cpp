@@ -1,4 +1,4 @@
-#include "core/loaded_module.hpp"
+#include "cmap/core/loaded_module.hpp"
 
 #include <dlfcn.h>
 #include <fmt/format.h>

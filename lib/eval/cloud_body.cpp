@@ -1,6 +1,6 @@
-#include "eval/cloud_body.hpp"
+#include "cloud_body.hpp"
 
-#include "cmap/core/core_box.hpp"
+#include "cmap/geometry/core_box.hpp"
 
 namespace cmap {
 

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "cmap/core/point_cloud.hpp"
+#include "cmap/geometry/point_cloud.hpp"
 
 namespace cmap {
 

@@ -1,4 +1,4 @@
-#include "eval/coordinate_step.hpp"
+#include "coordinate_step.hpp"
 
 #include <algorithm>
 #include <array>

@@ -7,10 +7,10 @@
 #include "cmap/core/parallel.hpp"
 #include "cmap/metrics/catalog.hpp"
 #include "cmap/peers/peer_tool.hpp"
-#include "eval/measurement.hpp"
-#include "eval/plausibility.hpp"
-#include "eval/preparation.hpp"
-#include "eval/stage_clock.hpp"
+#include "measurement.hpp"
+#include "plausibility.hpp"
+#include "preparation.hpp"
+#include "stage_clock.hpp"
 
 namespace cmap {
 namespace {

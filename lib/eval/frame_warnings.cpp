@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "eval/plausibility.hpp"
+#include "plausibility.hpp"
 
 namespace cmap {
 namespace {

@@ -5,9 +5,9 @@
 #include <functional>
 #include <numeric>
 
-#include "cmap/spatial/voxel_map.hpp"
-#include "eval/measurement.hpp"
-#include "eval/space_parts.hpp"
+#include "cmap/geometry/voxel_map.hpp"
+#include "measurement.hpp"
+#include "space_parts.hpp"
 
 namespace cmap {
 namespace {

@@ -1,10 +1,10 @@
 #include "cmap/eval/map_evaluation.hpp"
 
 #include "cmap/core/error.hpp"
-#include "eval/measurement.hpp"
-#include "eval/plausibility.hpp"
-#include "eval/preparation.hpp"
-#include "eval/stage_clock.hpp"
+#include "measurement.hpp"
+#include "plausibility.hpp"
+#include "preparation.hpp"
+#include "stage_clock.hpp"
 
 namespace cmap {
 namespace {

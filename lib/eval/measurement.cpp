@@ -1,4 +1,4 @@
-#include "eval/measurement.hpp"
+#include "measurement.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cmap/eval/evaluation.hpp"
-#include "eval/stage_clock.hpp"
+#include "stage_clock.hpp"
 
 namespace cmap {
 

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <memory>
 
+#include "cmap/geometry/voxel_map.hpp"
 #include "cmap/spatial/visibility.hpp"
-#include "cmap/spatial/voxel_map.hpp"
-#include "eval/measurement.hpp"
-#include "eval/space_parts.hpp"
+#include "measurement.hpp"
+#include "space_parts.hpp"
 
 namespace cmap {
 namespace {

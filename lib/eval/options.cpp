@@ -14,7 +14,7 @@
 #include "cmap/eval/metric_catalog.hpp"
 #include "cmap/io/json_text.hpp"
 #include "cmap/peers/peer_tool.hpp"
-#include "eval/presets.hpp"
+#include "presets.hpp"
 
 namespace cmap {
 namespace {

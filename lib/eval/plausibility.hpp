@@ -1,12 +1,12 @@
 #pragma once
 
+#include "cloud_body.hpp"
 #include "cmap/core/warning.hpp"
 #include "cmap/eval/options.hpp"
 #include "cmap/metrics/geometry.hpp"
 #include "cmap/metrics/map_pair.hpp"
 #include "cmap/metrics/record.hpp"
-#include "eval/cloud_body.hpp"
-#include "eval/coordinate_step.hpp"
+#include "coordinate_step.hpp"
 
 // What is probably wrong with the maps, said once each and never in the way: every check appends at most one warning a
 // map, and costs a sample of the points or less. `which` is "reference", "estimate" or "map". The ids:

@@ -8,7 +8,7 @@
 #include "cmap/core/parallel.hpp"
 #include "cmap/core/sampled_indices.hpp"
 #include "cmap/spatial/k_nearest.hpp"
-#include "eval/plausibility.hpp"
+#include "plausibility.hpp"
 
 namespace cmap {
 namespace {

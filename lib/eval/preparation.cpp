@@ -1,4 +1,4 @@
-#include "eval/preparation.hpp"
+#include "preparation.hpp"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,8 @@
 #include "cmap/core/parallel.hpp"
 #include "cmap/eval/map_error.hpp"
 #include "cmap/eval/metric_catalog.hpp"
-#include "cmap/spatial/voxel_map.hpp"
-#include "eval/plausibility.hpp"
+#include "cmap/geometry/voxel_map.hpp"
+#include "plausibility.hpp"
 
 namespace cmap {
 namespace {

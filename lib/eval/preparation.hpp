@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cmap/eval/evaluation.hpp"
-#include "eval/coordinate_step.hpp"
+#include "coordinate_step.hpp"
 
 namespace cmap {
 

@@ -4,8 +4,8 @@
 
 #include <optional>
 
+#include "cloud_body.hpp"
 #include "cmap/io/shift_hint.hpp"
-#include "eval/cloud_body.hpp"
 
 namespace cmap {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "eval/plausibility.hpp"
+#include "plausibility.hpp"
 
 namespace cmap {
 namespace {

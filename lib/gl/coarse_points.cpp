@@ -1,4 +1,4 @@
-#include "gl/coarse_points.hpp"
+#include "coarse_points.hpp"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "gl/egl_context.hpp"
+#include "egl_context.hpp"
 
 #include <EGL/eglext.h>
 

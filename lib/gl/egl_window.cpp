@@ -1,4 +1,4 @@
-#include "gl/egl_window.hpp"
+#include "egl_window.hpp"
 
 #include <vtkObjectFactory.h>
 #include <vtkOpenGLState.h>

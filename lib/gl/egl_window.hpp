@@ -2,7 +2,7 @@
 
 #include <vtkGenericOpenGLRenderWindow.h>
 
-#include "gl/egl_context.hpp"
+#include "egl_context.hpp"
 
 namespace cmap {
 

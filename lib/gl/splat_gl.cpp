@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "cmap/core/error.hpp"
-#include "gl/egl_window.hpp"
-#include "gl/worker.hpp"
+#include "egl_window.hpp"
+#include "worker.hpp"
 
 namespace cmap {
 namespace {

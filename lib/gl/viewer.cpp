@@ -16,7 +16,7 @@
 #include <filesystem>
 
 #include "cmap/core/error.hpp"
-#include "gl/viewer_model.hpp"
+#include "viewer_model.hpp"
 
 VTK_MODULE_INIT(vtkInteractionStyle)
 VTK_MODULE_INIT(vtkRenderingOpenGL2)

@@ -1,4 +1,4 @@
-#include "gl/viewer_marks.hpp"
+#include "viewer_marks.hpp"
 
 #include <cmath>
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "render/legend.hpp"
+#include "cmap/render/legend.hpp"
 
 namespace cmap {
 

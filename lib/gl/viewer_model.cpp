@@ -1,4 +1,4 @@
-#include "gl/viewer_model.hpp"
+#include "viewer_model.hpp"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "gl/viewer_marks.hpp"
-#include "render/panels.hpp"
+#include "cmap/render/panels.hpp"
+#include "viewer_marks.hpp"
 
 namespace cmap {
 namespace {

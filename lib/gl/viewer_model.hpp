@@ -5,7 +5,7 @@
 
 #include "cmap/gl/orbit_camera.hpp"
 #include "cmap/gl/viewer.hpp"
-#include "gl/coarse_points.hpp"
+#include "coarse_points.hpp"
 
 namespace cmap {
 

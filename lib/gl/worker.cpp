@@ -1,4 +1,4 @@
-#include "gl/worker.hpp"
+#include "worker.hpp"
 
 #include <utility>
 

@@ -1,11 +1,11 @@
-#include "graph/chordal.hpp"
+#include "chordal.hpp"
 
 #include <Eigen/SVD>
 #include <Eigen/SparseCholesky>
 #include <cmath>
 
 #include "cmap/core/error.hpp"
-#include "cmap/core/rotation.hpp"
+#include "cmap/geometry/rotation.hpp"
 
 namespace cmap::graph {
 namespace {

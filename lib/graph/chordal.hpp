@@ -1,6 +1,6 @@
 #pragma once
 
-#include "graph/node_graph.hpp"
+#include "node_graph.hpp"
 
 namespace cmap::graph {
 

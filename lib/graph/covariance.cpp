@@ -6,7 +6,7 @@
 
 #include "cmap/core/error.hpp"
 #include "cmap/graph/pose_graph.hpp"
-#include "graph/link_error.hpp"
+#include "link_error.hpp"
 
 namespace cmap {
 namespace {

@@ -9,10 +9,10 @@
 #include <stdexcept>
 
 #include "cmap/core/error.hpp"
+#include "cmap/io/line_reader.hpp"
+#include "cmap/io/number_text.hpp"
 #include "cmap/io/output_file.hpp"
-#include "io/line_reader.hpp"
-#include "io/number_text.hpp"
-#include "io/row_writer.hpp"
+#include "cmap/io/row_writer.hpp"
 
 namespace cmap {
 namespace {

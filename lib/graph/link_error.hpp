@@ -1,7 +1,7 @@
 #pragma once
 
-#include "graph/node_graph.hpp"
-#include "graph/rotation.hpp"
+#include "node_graph.hpp"
+#include "rotation.hpp"
 
 namespace cmap::graph {
 

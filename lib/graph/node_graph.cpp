@@ -1,4 +1,4 @@
-#include "graph/node_graph.hpp"
+#include "node_graph.hpp"
 
 #include <fmt/format.h>
 

@@ -4,11 +4,11 @@
 
 #include <functional>
 
+#include "chordal.hpp"
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
-#include "graph/chordal.hpp"
-#include "graph/link_error.hpp"
-#include "graph/solver.hpp"
+#include "link_error.hpp"
+#include "solver.hpp"
 
 namespace cmap {
 namespace {

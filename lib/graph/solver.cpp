@@ -1,4 +1,4 @@
-#include "graph/solver.hpp"
+#include "solver.hpp"
 
 #include <ceres/loss_function.h>
 #include <ceres/manifold.h>
@@ -10,7 +10,7 @@
 #include <array>
 
 #include "cmap/core/error.hpp"
-#include "graph/link_error.hpp"
+#include "link_error.hpp"
 
 namespace cmap::graph {
 namespace {

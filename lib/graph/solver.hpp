@@ -5,7 +5,7 @@
 #include <functional>
 #include <memory>
 
-#include "graph/node_graph.hpp"
+#include "node_graph.hpp"
 
 namespace cmap::graph {
 

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "cmap/metrics/order_statistics.hpp"
+#include "cmap/geometry/order_statistics.hpp"
 
 namespace cmap {
 

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cmap/geometry/order_statistics.hpp"
 #include "cmap/metrics/metric_sums.hpp"
-#include "cmap/metrics/order_statistics.hpp"
-#include "metrics/metric_columns.hpp"
+#include "metric_columns.hpp"
 
 namespace cmap {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "cmap/core/parallel.hpp"
-#include "metrics/metric_columns.hpp"
-#include "metrics/point_runs.hpp"
+#include "metric_columns.hpp"
+#include "point_runs.hpp"
 
 namespace cmap {
 namespace {

@@ -1,4 +1,4 @@
-#include "metrics/point_runs.hpp"
+#include "point_runs.hpp"
 
 #include <algorithm>
 #include <cmath>

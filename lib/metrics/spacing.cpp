@@ -3,7 +3,7 @@
 
 #include "cmap/core/exact_sum.hpp"
 #include "cmap/core/parallel.hpp"
-#include "cmap/metrics/order_statistics.hpp"
+#include "cmap/geometry/order_statistics.hpp"
 #include "cmap/metrics/point_spacing.hpp"
 #include "cmap/spatial/k_nearest.hpp"
 #include "cmap/spatial/nearest.hpp"

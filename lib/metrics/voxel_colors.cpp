@@ -3,9 +3,9 @@
 #include <stdexcept>
 #include <vector>
 
+#include "cmap/geometry/order_statistics.hpp"
 #include "cmap/metrics/color_consistency.hpp"
-#include "cmap/metrics/order_statistics.hpp"
-#include "metrics/voxels.hpp"
+#include "voxels.hpp"
 
 namespace cmap {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "cmap/core/parallel.hpp"
+#include "cmap/geometry/voxel_map.hpp"
 #include "cmap/spatial/bvh.hpp"
-#include "cmap/spatial/voxel_map.hpp"
 
 namespace cmap {
 

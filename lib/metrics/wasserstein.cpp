@@ -7,7 +7,7 @@
 
 #include "cmap/core/exact_sum.hpp"
 #include "cmap/core/parallel.hpp"
-#include "metrics/voxels.hpp"
+#include "voxels.hpp"
 
 namespace cmap {
 namespace {

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cmap/geometry/order_statistics.hpp"
 #include "cmap/metrics/geometry.hpp"
-#include "cmap/metrics/order_statistics.hpp"
 #include "cmap/peers/peer_tool.hpp"
-#include "peers/distances.hpp"
+#include "distances.hpp"
 
 namespace cmap {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "cmap/peers/peer_tool.hpp"
-#include "peers/distances.hpp"
+#include "distances.hpp"
 
 namespace cmap {
 namespace {}  // namespace

@@ -9,7 +9,7 @@
 #include "cmap/core/exact_sum.hpp"
 #include "cmap/metrics/catalog.hpp"
 #include "cmap/peers/peer_tool.hpp"
-#include "peers/distances.hpp"
+#include "distances.hpp"
 
 namespace cmap {
 namespace {

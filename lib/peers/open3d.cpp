@@ -4,7 +4,7 @@
 
 #include "cmap/peers/cloudanalyzer.hpp"
 #include "cmap/peers/peer_tool.hpp"
-#include "peers/distances.hpp"
+#include "distances.hpp"
 
 namespace cmap {
 namespace {}  // namespace

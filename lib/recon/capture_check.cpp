@@ -7,7 +7,7 @@
 #include "cmap/align/trajectory.hpp"
 #include "cmap/core/error.hpp"
 #include "cmap/io/lidar_scan.hpp"
-#include "recon/session_check.hpp"
+#include "session_check.hpp"
 
 namespace cmap {
 namespace fs = std::filesystem;

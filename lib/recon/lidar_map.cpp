@@ -4,7 +4,7 @@
 
 #include "cmap/align/trajectory.hpp"
 #include "cmap/core/parallel.hpp"
-#include "cmap/spatial/voxel_map.hpp"
+#include "cmap/geometry/voxel_map.hpp"
 
 namespace cmap {
 namespace {

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "cmap/core/error.hpp"
+#include "cmap/core/option_fields.hpp"
 #include "cmap/io/json_text.hpp"
-#include "core/option_fields.hpp"
 
 namespace cmap {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "cmap/align/umeyama.hpp"
 #include "cmap/core/error.hpp"
-#include "recon/median.hpp"
+#include "median.hpp"
 
 namespace cmap {
 namespace {

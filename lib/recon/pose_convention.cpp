@@ -1,4 +1,4 @@
-#include "recon/pose_convention.hpp"
+#include "pose_convention.hpp"
 
 #include <fmt/format.h>
 

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "cmap/core/error.hpp"
+#include "cmap/geometry/voxel_map.hpp"
 #include "cmap/spatial/nearest.hpp"
-#include "cmap/spatial/voxel_map.hpp"
 
 namespace cmap {
 namespace {

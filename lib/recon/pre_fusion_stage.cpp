@@ -5,11 +5,11 @@
 
 #include "cmap/core/error.hpp"
 #include "cmap/recon/overlap_scale.hpp"
-#include "recon/pose_convention.hpp"
-#include "recon/session_state.hpp"
-#include "recon/shared_frames.hpp"
-#include "recon/time_spans.hpp"
-#include "recon/usable_predictions.hpp"
+#include "pose_convention.hpp"
+#include "session_state.hpp"
+#include "shared_frames.hpp"
+#include "time_spans.hpp"
+#include "usable_predictions.hpp"
 
 namespace cmap {
 namespace {

@@ -12,8 +12,8 @@
 #include "cmap/core/error.hpp"
 #include "cmap/core/version.hpp"
 #include "cmap/recon/fusion.hpp"
-#include "recon/session_state.hpp"
-#include "recon/stage_files.hpp"
+#include "session_state.hpp"
+#include "stage_files.hpp"
 
 namespace cmap {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "cmap/core/version.hpp"
-#include "recon/session_state.hpp"
+#include "session_state.hpp"
 
 namespace cmap {
 namespace {

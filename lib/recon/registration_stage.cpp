@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "cmap/core/error.hpp"
-#include "recon/session_state.hpp"
+#include "session_state.hpp"
 
 namespace cmap {
 namespace {

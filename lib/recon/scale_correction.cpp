@@ -1,4 +1,4 @@
-#include "recon/scale_correction.hpp"
+#include "scale_correction.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -10,8 +10,8 @@
 #include <stdexcept>
 
 #include "cmap/core/error.hpp"
-#include "recon/median.hpp"
-#include "recon/scale_correction.hpp"
+#include "median.hpp"
+#include "scale_correction.hpp"
 
 namespace cmap {
 namespace {

@@ -1,4 +1,4 @@
-#include "recon/session_check.hpp"
+#include "session_check.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "cmap/core/error.hpp"
-#include "recon/pose_convention.hpp"
-#include "recon/session_state.hpp"
-#include "recon/usable_predictions.hpp"
+#include "pose_convention.hpp"
+#include "session_state.hpp"
+#include "usable_predictions.hpp"
 
 namespace cmap {
 namespace {

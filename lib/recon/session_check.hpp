@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cmap/recon/capture_check.hpp"
-#include "recon/time_spans.hpp"
+#include "time_spans.hpp"
 
 namespace cmap {
 

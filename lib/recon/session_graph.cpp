@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "cmap/core/error.hpp"
-#include "recon/median.hpp"
+#include "median.hpp"
 
 namespace cmap {
 namespace {

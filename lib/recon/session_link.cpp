@@ -6,10 +6,10 @@
 #include "cmap/align/icp.hpp"
 #include "cmap/align/umeyama.hpp"
 #include "cmap/core/error.hpp"
+#include "cmap/geometry/voxel_map.hpp"
 #include "cmap/recon/session_graph.hpp"
-#include "cmap/spatial/voxel_map.hpp"
-#include "recon/median.hpp"
-#include "recon/shared_frames.hpp"
+#include "median.hpp"
+#include "shared_frames.hpp"
 
 namespace cmap {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
-#include "cmap/spatial/voxel_map.hpp"
+#include "cmap/geometry/voxel_map.hpp"
 
 namespace cmap {
 namespace {

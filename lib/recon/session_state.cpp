@@ -1,9 +1,9 @@
-#include "recon/session_state.hpp"
+#include "session_state.hpp"
 
 #include <limits>
 
 #include "cmap/io/transform_file.hpp"
-#include "recon/usable_predictions.hpp"
+#include "usable_predictions.hpp"
 
 namespace cmap {
 namespace {

@@ -1,4 +1,4 @@
-#include "recon/shared_frames.hpp"
+#include "shared_frames.hpp"
 
 #include <cmath>
 

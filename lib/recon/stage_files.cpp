@@ -1,4 +1,4 @@
-#include "recon/stage_files.hpp"
+#include "stage_files.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "recon/time_spans.hpp"
+#include "time_spans.hpp"
 
 #include <fmt/format.h>
 

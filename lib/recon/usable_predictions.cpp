@@ -1,11 +1,11 @@
-#include "recon/usable_predictions.hpp"
+#include "usable_predictions.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "cmap/core/error.hpp"
-#include "recon/median.hpp"
+#include "median.hpp"
 
 namespace cmap {
 namespace {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "render/names.hpp"
+#include "names.hpp"
 
 namespace cmap {
 namespace {

@@ -3,12 +3,12 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
+#include "camera_json.hpp"
 #include "cmap/core/error.hpp"
 #include "cmap/core/spelling.hpp"
 #include "cmap/io/json_text.hpp"
 #include "cmap/render/camera.hpp"
-#include "render/camera_json.hpp"
-#include "render/open3d_camera.hpp"
+#include "open3d_camera.hpp"
 
 namespace cmap {
 

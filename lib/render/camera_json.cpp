@@ -1,11 +1,11 @@
-#include "render/camera_json.hpp"
+#include "camera_json.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "cmap/core/error.hpp"
-#include "cmap/core/point_cloud.hpp"
+#include "cmap/geometry/point_cloud.hpp"
 
 namespace cmap {
 

@@ -2,7 +2,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "cmap/render/layer.hpp"
-#include "render/names.hpp"
+#include "names.hpp"
 
 namespace cmap {
 namespace {

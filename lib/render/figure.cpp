@@ -7,9 +7,9 @@
 
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
-#include "render/legend.hpp"
-#include "render/names.hpp"
-#include "render/panels.hpp"
+#include "cmap/render/legend.hpp"
+#include "cmap/render/panels.hpp"
+#include "names.hpp"
 
 namespace cmap {
 namespace {

@@ -1,11 +1,12 @@
 #include "cmap/render/gl_module.hpp"
 
-#include "core/loaded_module.hpp"
+#include "cmap/core/loaded_module.hpp"
 
 namespace cmap {
 
 GlModule::GlModule() {
-  const LoadedModule module("libcmap_gl.so", "this build has no OpenGL (tools/install_dependencies.sh --all, build again)");
+  const LoadedModule module("libcmap_gl.so",
+                            "this build has no OpenGL (tools/install_dependencies.sh --all, build again)");
   module.find("cmap_gl_open_splatter", open_splatter_);
   module.find("cmap_gl_require_display", require_display_);
   module.find("cmap_gl_view", view_);

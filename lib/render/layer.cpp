@@ -6,14 +6,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cmap/core/color.hpp"
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
 #include "cmap/core/round_number.hpp"
 #include "cmap/core/spelling.hpp"
+#include "cmap/geometry/color.hpp"
+#include "cmap/geometry/voxel_map.hpp"
 #include "cmap/metrics/color_consistency.hpp"
 #include "cmap/metrics/wasserstein.hpp"
-#include "cmap/spatial/voxel_map.hpp"
 
 namespace cmap {
 namespace {

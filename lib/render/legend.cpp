@@ -1,4 +1,4 @@
-#include "render/legend.hpp"
+#include "cmap/render/legend.hpp"
 
 #include <fmt/format.h>
 

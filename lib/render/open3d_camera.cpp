@@ -1,4 +1,4 @@
-#include "render/open3d_camera.hpp"
+#include "open3d_camera.hpp"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "camera_json.hpp"
 #include "cmap/core/error.hpp"
-#include "render/camera_json.hpp"
 
 namespace cmap {
 namespace {

@@ -9,7 +9,7 @@
 #include "cmap/core/error.hpp"
 #include "cmap/io/file_place.hpp"
 #include "cmap/io/output_folder.hpp"
-#include "render/video_file.hpp"
+#include "video_file.hpp"
 
 namespace cmap {
 namespace {

@@ -1,4 +1,4 @@
-#include "render/video_file.hpp"
+#include "video_file.hpp"
 
 #include <fmt/format.h>
 #include <signal.h>
@@ -14,7 +14,7 @@
 
 #include "cmap/core/error.hpp"
 #include "cmap/io/stop_signals.hpp"
-#include "render/file_extension.hpp"
+#include "file_extension.hpp"
 
 extern char** environ;
 

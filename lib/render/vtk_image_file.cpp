@@ -9,7 +9,7 @@
 #include "cmap/core/error.hpp"
 #include "cmap/io/file_place.hpp"
 #include "cmap/render/image.hpp"
-#include "render/file_extension.hpp"
+#include "file_extension.hpp"
 
 namespace cmap {
 namespace {

@@ -1,4 +1,4 @@
-#include "report/distribution.hpp"
+#include "distribution.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -6,7 +6,7 @@
 
 #include "cmap/core/parallel.hpp"
 #include "cmap/core/round_number.hpp"
-#include "cmap/metrics/order_statistics.hpp"
+#include "cmap/geometry/order_statistics.hpp"
 #include "cmap/spatial/radix_sort.hpp"
 
 namespace cmap {

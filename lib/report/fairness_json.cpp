@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "cmap/core/error.hpp"
-#include "report/record_json.hpp"
+#include "cmap/report/record_json.hpp"
 
 namespace cmap {
 namespace {

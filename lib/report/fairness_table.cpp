@@ -1,10 +1,10 @@
-#include "report/fairness_table.hpp"
+#include "fairness_table.hpp"
 
 #include <fmt/format.h>
 
 #include <functional>
 
-#include "report/table_text.hpp"
+#include "cmap/report/table_text.hpp"
 
 namespace cmap {
 namespace {

@@ -1,6 +1,6 @@
 #include "cmap/report/figure_module.hpp"
 
-#include "core/loaded_module.hpp"
+#include "cmap/core/loaded_module.hpp"
 
 namespace cmap {
 

@@ -7,13 +7,13 @@
 #include <stdexcept>
 
 #include "cmap/io/file_place.hpp"
-#include "report/base64.hpp"
-#include "report/distribution.hpp"
-#include "report/embedded_file.hpp"
-#include "report/file_names.hpp"
-#include "report/packed_map.hpp"
-#include "report/page_layers.hpp"
-#include "report/thinning.hpp"
+#include "cmap/report/base64.hpp"
+#include "cmap/report/embedded_file.hpp"
+#include "cmap/report/file_names.hpp"
+#include "distribution.hpp"
+#include "packed_map.hpp"
+#include "page_layers.hpp"
+#include "thinning.hpp"
 
 // The page built from web/; its data belongs where kDataPlace stands.
 CMAP_EMBED(html_page, CMAP_HTML_PAGE)

@@ -1,4 +1,4 @@
-#include "report/packed_map.hpp"
+#include "packed_map.hpp"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <span>
 
-#include "cmap/core/color.hpp"
-#include "cmap/core/core_box.hpp"
+#include "cmap/geometry/color.hpp"
+#include "cmap/geometry/core_box.hpp"
 
 namespace cmap {
 namespace {

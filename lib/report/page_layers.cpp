@@ -1,4 +1,4 @@
-#include "report/page_layers.hpp"
+#include "page_layers.hpp"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cmap/metrics/local_color_recall.hpp"
-#include "report/distribution.hpp"
+#include "distribution.hpp"
 
 namespace cmap {
 

@@ -1,4 +1,4 @@
-#include "report/record_json.hpp"
+#include "cmap/report/record_json.hpp"
 
 #include <cmath>
 

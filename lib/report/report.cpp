@@ -10,8 +10,8 @@
 #include "cmap/align/align.hpp"
 #include "cmap/core/version.hpp"
 #include "cmap/io/transform_file.hpp"
-#include "report/record_json.hpp"
-#include "report/table_text.hpp"
+#include "cmap/report/record_json.hpp"
+#include "cmap/report/table_text.hpp"
 
 namespace cmap {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "cmap/report/report.hpp"
-#include "report/fairness_table.hpp"
-#include "report/table_text.hpp"
+#include "cmap/report/table_text.hpp"
+#include "fairness_table.hpp"
 
 namespace cmap {
 namespace {

@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "cmap/core/parallel.hpp"
-#include "spatial/simd/kernels.hpp"
+#include "simd/kernels.hpp"
 
 namespace cmap {
 

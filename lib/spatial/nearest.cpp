@@ -1,7 +1,7 @@
 #include "cmap/spatial/nearest.hpp"
 
 #include "cmap/core/parallel.hpp"
-#include "spatial/simd/kernels.hpp"
+#include "simd/kernels.hpp"
 
 namespace cmap {
 namespace {

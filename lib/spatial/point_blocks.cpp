@@ -6,11 +6,11 @@
 #include <span>
 #include <stdexcept>
 
-#include "cmap/core/color.hpp"
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
+#include "cmap/geometry/color.hpp"
 #include "cmap/spatial/radix_sort.hpp"
-#include "spatial/simd/kernels.hpp"
+#include "simd/kernels.hpp"
 
 namespace cmap {
 namespace {

@@ -6,8 +6,8 @@
 #include <Eigen/Geometry>
 #include <random>
 
-#include "cmap/align/similarity.hpp"
 #include "cmap/core/error.hpp"
+#include "cmap/geometry/similarity.hpp"
 #include "core/refusal.hpp"
 #include "spatial/clouds.hpp"
 

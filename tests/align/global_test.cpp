@@ -1,12 +1,12 @@
 #include "cmap/align/global.hpp"
 
 #include "align/align_testing.hpp"
-#include "align/compatibility.hpp"
-#include "align/features.hpp"
 #include "align/real_clouds.hpp"
 #include "align/towns.hpp"
 #include "cmap/align/align.hpp"
 #include "cmap/core/parallel.hpp"
+#include "compatibility.hpp"
+#include "features.hpp"
 
 namespace cmap {
 namespace {

@@ -15,7 +15,7 @@
 
 #include "cmap/core/error.hpp"
 #include "cmap/eval/evaluation.hpp"
-#include "report/record_json.hpp"
+#include "cmap/report/record_json.hpp"
 
 namespace cmap::test {
 

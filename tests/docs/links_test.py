@@ -72,7 +72,7 @@ class Documents(unittest.TestCase):
                         self.assertIn(anchor, anchors(place))
 
     def test_named_files_exist(self):
-        """`lib/io/ply_reader.cpp`; names in capitals and in braces stand for others."""
+        """`lib/io/clouds/ply/ply_reader.cpp`; names in capitals and in braces stand for others."""
         for page in PAGES:
             for name in re.findall(r"`((?:%s)/[^`\s]*)`" % "|".join(FOLDERS), without_code(page.read_text())):
                 if re.search(r"NAME|[*{]", name):

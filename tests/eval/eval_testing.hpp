@@ -13,8 +13,8 @@
 
 #include "cmap/core/error.hpp"
 #include "cmap/eval/evaluation.hpp"
+#include "cmap/report/record_json.hpp"
 #include "core/refusal.hpp"
-#include "report/record_json.hpp"
 #include "spatial/clouds.hpp"
 
 namespace cmap::test {

@@ -1,4 +1,4 @@
-#include "eval/plausibility.hpp"
+#include "plausibility.hpp"
 
 #include <cmath>
 #include <random>

@@ -1,10 +1,10 @@
-#include "eval/preparation.hpp"
+#include "preparation.hpp"
 
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "cmap/core/color.hpp"
 #include "cmap/eval/map_error.hpp"
+#include "cmap/geometry/color.hpp"
 #include "eval/eval_testing.hpp"
 
 namespace cmap {

@@ -8,13 +8,13 @@
 #include <span>
 #include <string>
 
+#include "captures/capture_json.hpp"
+#include "captures/session_arrays.hpp"
+#include "clouds/file_format.hpp"
+#include "clouds/format_readers.hpp"
 #include "cmap/core/error.hpp"
-#include "io/capture_json.hpp"
-#include "io/file_format.hpp"
-#include "io/format_readers.hpp"
-#include "io/session_arrays.hpp"
-#include "io/trajectory_rows.hpp"
-#include "io/transform_numbers.hpp"
+#include "poses/trajectory_rows.hpp"
+#include "poses/transform_numbers.hpp"
 
 namespace cmap::fuzz {
 

@@ -1,7 +1,7 @@
-#include "gl/viewer_model.hpp"
+#include "viewer_model.hpp"
 
+#include "cmap/render/panels.hpp"
 #include "eval/eval_testing.hpp"
-#include "render/panels.hpp"
 
 namespace cmap {
 namespace {

@@ -1,7 +1,7 @@
-#include "graph/link_error.hpp"
+#include "link_error.hpp"
 
 #include "graph/graph_testing.hpp"
-#include "graph/solver.hpp"
+#include "solver.hpp"
 
 namespace cmap::graph {
 namespace {

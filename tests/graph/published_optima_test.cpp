@@ -2,9 +2,9 @@
 
 #include "cmap/graph/g2o_file.hpp"
 #include "graph/graph_testing.hpp"
-#include "graph/link_error.hpp"
-#include "graph/solver.hpp"
 #include "io/real_data.hpp"
+#include "link_error.hpp"
+#include "solver.hpp"
 
 // Optima of public pose graphs: of this module's cost (found independently, with automatic derivatives on quaternions
 // and translations in blocks of their own), and of SE-Sync's, as its paper prints them (Rosen et al. 2019, tables).

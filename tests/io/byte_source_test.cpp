@@ -1,12 +1,12 @@
-#include "io/byte_source.hpp"
+#include "cmap/io/byte_source.hpp"
 
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <thread>
 
+#include "cmap/io/line_reader.hpp"
 #include "io/io_testing.hpp"
-#include "io/line_reader.hpp"
 
 namespace cmap::testing {
 namespace {

@@ -1,7 +1,7 @@
 #include <array>
 #include <vector>
 
-#include "io/format_readers.hpp"
+#include "clouds/format_readers.hpp"
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {

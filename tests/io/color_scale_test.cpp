@@ -1,7 +1,7 @@
 // What color numbers mean: one rule for every format, held here to colors whose values are known.
 #include <fmt/format.h>
 
-#include "cmap/core/color.hpp"
+#include "cmap/geometry/color.hpp"
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {

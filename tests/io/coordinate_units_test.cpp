@@ -1,9 +1,9 @@
 // Units of coordinates by WKT, by GeoKeys and by EPSG codes.
 
-#include "io/coordinate_units.hpp"
+#include "units/coordinate_units.hpp"
 
-#include "io/epsg_units.hpp"
 #include "io/las_testing.hpp"
+#include "units/epsg_units.hpp"
 
 namespace cmap::testing {
 namespace {

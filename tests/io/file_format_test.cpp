@@ -1,4 +1,4 @@
-#include "io/file_format.hpp"
+#include "clouds/file_format.hpp"
 
 #include <sys/stat.h>
 

@@ -1,4 +1,4 @@
-#include "io/foreign_formats.hpp"
+#include "clouds/foreign_formats.hpp"
 
 #include <zlib.h>
 

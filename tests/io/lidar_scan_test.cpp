@@ -1,7 +1,7 @@
 #include "cmap/io/lidar_scan.hpp"
 
+#include "containers/lzf_codec.hpp"
 #include "io/capture_testing.hpp"
-#include "io/lzf_codec.hpp"
 
 namespace cmap::testing {
 namespace {

@@ -1,4 +1,4 @@
-#include "io/not_a_cloud.hpp"
+#include "clouds/not_a_cloud.hpp"
 
 #include <cmath>
 

@@ -1,8 +1,8 @@
 #include <limits>
 
+#include "containers/npy_array.hpp"
+#include "containers/zip_archive.hpp"
 #include "io/capture_testing.hpp"
-#include "io/npy_array.hpp"
-#include "io/zip_archive.hpp"
 
 namespace cmap::testing {
 namespace {

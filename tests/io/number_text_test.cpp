@@ -1,11 +1,11 @@
-#include "io/number_text.hpp"
+#include "cmap/io/number_text.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "io/decimal_comma.hpp"
+#include "bytes/decimal_comma.hpp"
 
 namespace cmap {
 namespace {

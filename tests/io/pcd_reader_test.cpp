@@ -1,7 +1,7 @@
 #include <limits>
 
+#include "containers/lzf_codec.hpp"
 #include "io/io_testing.hpp"
-#include "io/lzf_codec.hpp"
 
 namespace cmap::testing {
 namespace {

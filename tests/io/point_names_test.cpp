@@ -1,4 +1,4 @@
-#include "io/point_names.hpp"
+#include "clouds/point_names.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "io/format_readers.hpp"
+#include "clouds/format_readers.hpp"
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {

@@ -1,4 +1,4 @@
-#include "io/unnamed_columns.hpp"
+#include "clouds/unnamed_columns.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

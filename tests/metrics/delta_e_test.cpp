@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "cmap/core/color.hpp"
+#include "cmap/geometry/color.hpp"
 #include "metrics/measured.hpp"
 
 namespace cmap {

@@ -10,8 +10,8 @@
 #include <cmath>
 #include <vector>
 
-#include "cmap/core/color.hpp"
 #include "cmap/core/parallel.hpp"
+#include "cmap/geometry/color.hpp"
 #include "cmap/metrics/map_pair.hpp"
 #include "spatial/clouds.hpp"
 

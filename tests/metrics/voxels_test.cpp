@@ -1,4 +1,4 @@
-#include "metrics/voxels.hpp"
+#include "voxels.hpp"
 
 #include <array>
 #include <map>

@@ -3,7 +3,7 @@
 #include <set>
 
 #include "recon/recon_testing.hpp"
-#include "recon/scale_correction.hpp"
+#include "scale_correction.hpp"
 
 namespace cmap {
 namespace {

@@ -1,7 +1,7 @@
 #include "cmap/recon/session_registration.hpp"
 
 #include "cmap/align/umeyama.hpp"
-#include "recon/median.hpp"
+#include "median.hpp"
 #include "recon/recon_testing.hpp"
 
 namespace cmap {

@@ -1,4 +1,4 @@
-#include "report/distribution.hpp"
+#include "distribution.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "report/file_names.hpp"
+#include "cmap/report/file_names.hpp"
 
 #include <gtest/gtest.h>
 

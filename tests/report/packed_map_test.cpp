@@ -1,4 +1,4 @@
-#include "report/packed_map.hpp"
+#include "packed_map.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

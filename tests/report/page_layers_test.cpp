@@ -1,4 +1,4 @@
-#include "report/page_layers.hpp"
+#include "page_layers.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

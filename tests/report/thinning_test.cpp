@@ -1,4 +1,4 @@
-#include "report/thinning.hpp"
+#include "thinning.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

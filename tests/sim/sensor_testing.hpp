@@ -8,7 +8,7 @@
 
 #include "cmap/sim/path.hpp"
 #include "cmap/sim/scene.hpp"
-#include "sim/scene_builder.hpp"
+#include "scene/scene_builder.hpp"
 
 namespace cmap::testing {
 

@@ -8,8 +8,8 @@
 #include <random>
 #include <string>
 
-#include "cmap/core/camera_model.hpp"
 #include "cmap/core/parallel.hpp"
+#include "cmap/geometry/camera_model.hpp"
 #include "cmap/sim/scene.hpp"
 #include "io/io_testing.hpp"
 

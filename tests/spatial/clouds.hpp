@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "cmap/core/point_cloud.hpp"
+#include "cmap/geometry/point_cloud.hpp"
 
 namespace cmap::test {
 

@@ -6,8 +6,8 @@
 
 #include "cmap/core/parallel.hpp"
 #include "cmap/spatial/nearest.hpp"
+#include "simd/kernels.hpp"
 #include "spatial/clouds.hpp"
-#include "spatial/simd/kernels.hpp"
 
 namespace cmap {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <Eigen/LU>
 
-#include "cmap/core/color.hpp"
+#include "cmap/geometry/color.hpp"
 #include "spatial/clouds.hpp"
 
 namespace cmap {

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "cmap/core/error.hpp"
+#include "simd/kernels.hpp"
 #include "spatial/clouds.hpp"
-#include "spatial/simd/kernels.hpp"
 
 namespace cmap {
 namespace {

@@ -266,7 +266,7 @@ class Leaderboard(CmapEval):
         self.assertEqual(result.stdout, b"")
 
     def test_refusals(self):
-        """Every bad line of a manifest is in tests/report/leaderboard_manifest_test.cpp."""
+        """Every bad line of a manifest is in tests/board/leaderboard_manifest_test.cpp."""
         output = self.outputs / "board"
         broken = self.folder / "broken.json"
         broken.write_text("{")

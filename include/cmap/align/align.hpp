@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cmap/align/alignment.hpp"
-#include "cmap/core/point_cloud.hpp"
+#include "cmap/geometry/point_cloud.hpp"
 
 namespace cmap {
 

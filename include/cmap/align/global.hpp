@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "cmap/align/alignment.hpp"
-#include "cmap/core/point_cloud.hpp"
+#include "cmap/geometry/point_cloud.hpp"
 
 namespace cmap {
 

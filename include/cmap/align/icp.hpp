@@ -4,7 +4,7 @@
 
 #include "cmap/align/alignment.hpp"
 #include "cmap/align/robust_kernel.hpp"
-#include "cmap/core/point_cloud.hpp"
+#include "cmap/geometry/point_cloud.hpp"
 
 namespace cmap {
 

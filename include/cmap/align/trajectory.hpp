@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "cmap/align/alignment.hpp"
-#include "cmap/align/similarity.hpp"
 #include "cmap/align/umeyama.hpp"
+#include "cmap/geometry/similarity.hpp"
 #include "cmap/io/capture.hpp"
 #include "cmap/io/trajectory_file.hpp"
 

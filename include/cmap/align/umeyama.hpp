@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <span>
 
-#include "cmap/align/similarity.hpp"
 #include "cmap/core/parallel.hpp"
+#include "cmap/geometry/similarity.hpp"
 
 namespace cmap {
 

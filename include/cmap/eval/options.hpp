@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "cmap/core/point_cloud.hpp"
+#include "cmap/geometry/point_cloud.hpp"
 #include "cmap/io/point_cloud_file.hpp"
 #include "cmap/metrics/metric_options.hpp"
 #include "cmap/spatial/nearest.hpp"

@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "cmap/core/point_cloud.hpp"
 #include "cmap/core/progress.hpp"
 #include "cmap/eval/options.hpp"
+#include "cmap/geometry/point_cloud.hpp"
 
 namespace cmap {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "cmap/core/camera_model.hpp"
 #include "cmap/core/warning.hpp"
+#include "cmap/geometry/camera_model.hpp"
 #include "cmap/io/faults.hpp"
 #include "cmap/io/trajectory_file.hpp"
 

@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "cmap/core/array.hpp"
-#include "cmap/core/camera_model.hpp"
-#include "cmap/core/point_cloud.hpp"
+#include "cmap/geometry/camera_model.hpp"
+#include "cmap/geometry/point_cloud.hpp"
 
 namespace cmap {
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "cmap/core/point_cloud.hpp"
 #include "cmap/core/warning.hpp"
+#include "cmap/geometry/point_cloud.hpp"
 #include "cmap/io/output_file.hpp"
 
 namespace cmap {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "cmap/core/array.hpp"
-#include "cmap/core/point_cloud.hpp"
 #include "cmap/core/warning.hpp"
+#include "cmap/geometry/point_cloud.hpp"
 #include "cmap/io/faults.hpp"
 
 namespace cmap {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cmap/core/color.hpp"
+#include "cmap/geometry/color.hpp"
 #include "cmap/spatial/bvh.hpp"
 #include "cmap/spatial/nearest.hpp"
 #include "cmap/spatial/threshold.hpp"

@@ -7,7 +7,7 @@
 #include <array>
 #include <vector>
 
-#include "cmap/core/point_cloud.hpp"
+#include "cmap/geometry/point_cloud.hpp"
 
 namespace cmap {
 

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <span>
 
-#include "cmap/core/point_cloud.hpp"
+#include "cmap/geometry/point_cloud.hpp"
+#include "cmap/geometry/voxel_map.hpp"
 #include "cmap/recon/session_points.hpp"
-#include "cmap/spatial/voxel_map.hpp"
 
 namespace cmap {
 

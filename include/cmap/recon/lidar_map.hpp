@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 
-#include "cmap/core/point_cloud.hpp"
+#include "cmap/geometry/point_cloud.hpp"
 #include "cmap/io/capture.hpp"
 #include "cmap/io/lidar_scan.hpp"
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "cmap/align/sim3_icp.hpp"
-#include "cmap/align/similarity.hpp"
-#include "cmap/core/point_cloud.hpp"
+#include "cmap/geometry/point_cloud.hpp"
+#include "cmap/geometry/similarity.hpp"
 #include "cmap/recon/session_points.hpp"
 
 namespace cmap {

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "cmap/core/point_cloud.hpp"
 #include "cmap/core/progress.hpp"
 #include "cmap/core/warning.hpp"
+#include "cmap/geometry/point_cloud.hpp"
 #include "cmap/io/capture.hpp"
 #include "cmap/recon/options.hpp"
 #include "cmap/recon/session_graph.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "cmap/align/similarity.hpp"
+#include "cmap/geometry/similarity.hpp"
 #include "cmap/graph/pose_graph.hpp"
 #include "cmap/recon/session_points.hpp"
 #include "cmap/recon/session_registration.hpp"

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <limits>
 
-#include "cmap/align/similarity.hpp"
-#include "cmap/core/point_cloud.hpp"
+#include "cmap/geometry/point_cloud.hpp"
+#include "cmap/geometry/similarity.hpp"
 #include "cmap/io/session_predictions.hpp"
 
 namespace cmap {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cmap/align/similarity.hpp"
+#include "cmap/geometry/similarity.hpp"
 
 namespace cmap {
 

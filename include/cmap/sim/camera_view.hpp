@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "cmap/core/array.hpp"
-#include "cmap/core/camera_model.hpp"
+#include "cmap/geometry/camera_model.hpp"
 #include "cmap/io/image_file.hpp"
 #include "cmap/sim/scene.hpp"
 

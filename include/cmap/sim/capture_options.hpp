@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cmap/core/camera_model.hpp"
+#include "cmap/geometry/camera_model.hpp"
 #include "cmap/sim/imu.hpp"
 #include "cmap/sim/lidar.hpp"
 #include "cmap/sim/path.hpp"

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "cmap/core/array.hpp"
-#include "cmap/core/camera_model.hpp"
+#include "cmap/geometry/camera_model.hpp"
 #include "cmap/io/image_file.hpp"
 
 namespace cmap {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "cmap/core/camera_model.hpp"
+#include "cmap/geometry/camera_model.hpp"
 #include "cmap/io/session_predictions.hpp"
 #include "cmap/sim/camera_view.hpp"
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "cmap/core/point_cloud.hpp"
+#include "cmap/geometry/point_cloud.hpp"
 
 namespace cmap {
 

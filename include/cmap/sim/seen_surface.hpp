@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <span>
 
-#include "cmap/core/camera_model.hpp"
+#include "cmap/geometry/camera_model.hpp"
 #include "cmap/sim/scene.hpp"
 
 namespace cmap {

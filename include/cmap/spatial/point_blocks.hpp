@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "cmap/core/array.hpp"
-#include "cmap/core/point_cloud.hpp"
+#include "cmap/geometry/point_cloud.hpp"
 
 namespace cmap {
 

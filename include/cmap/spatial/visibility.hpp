@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <span>
 
+#include "cmap/geometry/voxel_map.hpp"
 #include "cmap/spatial/bvh.hpp"
-#include "cmap/spatial/voxel_map.hpp"
 
 namespace cmap {
 

@@ -1,4 +1,4 @@
-#include "align/methods/icp_method.hpp"
+#include "methods/icp_method.hpp"
 
 namespace cmap::registration {
 

@@ -2,7 +2,7 @@
 
 #include "cmap/core/error.hpp"
 #include "cmap/metrics/metric.hpp"
-#include "metrics/color/color_fields.hpp"
+#include "color/color_fields.hpp"
 
 namespace cmap {
 namespace {

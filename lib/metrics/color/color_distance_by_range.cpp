@@ -1,7 +1,7 @@
 #include <array>
 
-#include "metrics/color/color_distance.hpp"
-#include "metrics/color/color_fields.hpp"
+#include "color/color_distance.hpp"
+#include "color/color_fields.hpp"
 
 namespace cmap {
 namespace {

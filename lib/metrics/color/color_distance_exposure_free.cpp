@@ -1,5 +1,5 @@
-#include "metrics/color/color_distance.hpp"
-#include "metrics/color/color_fields.hpp"
+#include "color/color_distance.hpp"
+#include "color/color_fields.hpp"
 
 namespace cmap {
 namespace {

@@ -1,6 +1,6 @@
 #include "cmap/metrics/catalog.hpp"
-#include "metrics/color/color_distance.hpp"
-#include "metrics/color/color_fields.hpp"
+#include "color/color_distance.hpp"
+#include "color/color_fields.hpp"
 
 namespace cmap::catalog {
 

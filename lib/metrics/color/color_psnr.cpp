@@ -1,6 +1,6 @@
-#include "cmap/core/color.hpp"
+#include "cmap/geometry/color.hpp"
 #include "cmap/metrics/metric.hpp"
-#include "metrics/color/color_fields.hpp"
+#include "color/color_fields.hpp"
 
 namespace cmap {
 namespace {

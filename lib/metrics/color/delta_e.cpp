@@ -1,10 +1,10 @@
 #include <array>
 
-#include "cmap/core/color.hpp"
 #include "cmap/core/parallel.hpp"
+#include "cmap/geometry/color.hpp"
+#include "cmap/geometry/order_statistics.hpp"
 #include "cmap/metrics/metric.hpp"
-#include "cmap/metrics/order_statistics.hpp"
-#include "metrics/color/color_fields.hpp"
+#include "color/color_fields.hpp"
 
 namespace cmap {
 namespace {

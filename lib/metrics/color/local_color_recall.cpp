@@ -1,5 +1,5 @@
 #include "cmap/metrics/metric.hpp"
-#include "metrics/color/color_fields.hpp"
+#include "color/color_fields.hpp"
 
 namespace cmap {
 namespace {

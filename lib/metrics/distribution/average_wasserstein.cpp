@@ -1,6 +1,6 @@
+#include "cmap/geometry/order_statistics.hpp"
 #include "cmap/metrics/metric.hpp"
-#include "cmap/metrics/order_statistics.hpp"
-#include "metrics/distribution/wasserstein_field.hpp"
+#include "distribution/wasserstein_field.hpp"
 
 namespace cmap {
 namespace {

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "cmap/metrics/metric.hpp"
-#include "metrics/distribution/wasserstein_field.hpp"
+#include "distribution/wasserstein_field.hpp"
 
 namespace cmap::catalog {
 

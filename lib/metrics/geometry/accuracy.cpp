@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "metrics/geometry/band_counts.hpp"
+#include "geometry/band_counts.hpp"
 
 namespace cmap::catalog {
 

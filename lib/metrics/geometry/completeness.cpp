@@ -1,5 +1,5 @@
 #include "cmap/metrics/catalog.hpp"
-#include "metrics/geometry/band_counts.hpp"
+#include "geometry/band_counts.hpp"
 
 namespace cmap::catalog {
 

@@ -1,6 +1,6 @@
 #include "cmap/metrics/catalog.hpp"
 #include "cmap/metrics/geometry.hpp"
-#include "metrics/geometry/band_counts.hpp"
+#include "geometry/band_counts.hpp"
 
 namespace cmap {
 

@@ -1,4 +1,4 @@
-#include "metrics/geometry/band_counts.hpp"
+#include "geometry/band_counts.hpp"
 
 namespace cmap::catalog {
 

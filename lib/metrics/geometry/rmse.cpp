@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "cmap/metrics/catalog.hpp"
-#include "metrics/geometry/band_counts.hpp"
+#include "geometry/band_counts.hpp"
 
 namespace cmap {
 namespace catalog {

@@ -1,4 +1,4 @@
-#include "spatial/simd/kernels.hpp"
+#include "simd/kernels.hpp"
 
 namespace cmap {
 

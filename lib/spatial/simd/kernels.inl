@@ -3,16 +3,16 @@
 // No inline function of another header may be emitted here and then be shared with the rest of the program: it would
 // carry this file's instructions onto processors without them. Hence plain loops and pointers in the kernels.
 
-#include "spatial/simd/kernels.hpp"
+#include "simd/kernels.hpp"
 
 // In order of use.
 // clang-format off
-#include "spatial/simd/hilbert.inl"
-#include "spatial/simd/traversal.inl"
-#include "spatial/simd/nearest.inl"
-#include "spatial/simd/k_nearest.inl"
-#include "spatial/simd/color_within.inl"
-#include "spatial/simd/neighborhood.inl"
+#include "simd/hilbert.inl"
+#include "simd/traversal.inl"
+#include "simd/nearest.inl"
+#include "simd/k_nearest.inl"
+#include "simd/color_within.inl"
+#include "simd/neighborhood.inl"
 // clang-format on
 
 namespace cmap::CMAP_LANES {

@@ -1,4 +1,4 @@
-#include "spatial/simd/lanes_avx2.hpp"
+#include "simd/lanes_avx2.hpp"
 
 #define CMAP_LANES avx2
-#include "spatial/simd/kernels.inl"
+#include "simd/kernels.inl"

@@ -1,4 +1,4 @@
-#include "spatial/simd/lanes_avx512.hpp"
+#include "simd/lanes_avx512.hpp"
 
 #define CMAP_LANES avx512
-#include "spatial/simd/kernels.inl"
+#include "simd/kernels.inl"

@@ -1,4 +1,4 @@
-#include "spatial/simd/lanes_plain.hpp"
+#include "simd/lanes_plain.hpp"
 
 #define CMAP_LANES plain
-#include "spatial/simd/kernels.inl"
+#include "simd/kernels.inl"

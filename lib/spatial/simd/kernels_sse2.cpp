@@ -1,4 +1,4 @@
-#include "spatial/simd/lanes_sse2.hpp"
+#include "simd/lanes_sse2.hpp"
 
 #define CMAP_LANES sse2
-#include "spatial/simd/kernels.inl"
+#include "simd/kernels.inl"

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "cmap/geometry/rotation.hpp"
+
+namespace cmap {
+
+/// x_dst = scale rotation x_src + translation: a rigid motion where the scale is 1.
+struct Similarity {
+  double scale = 1.0;
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+
+  Eigen::Matrix3d linear() const { return scale * rotation; }
+  Eigen::Matrix4d matrix() const;
+  Similarity inverse() const;
+
+  Eigen::Vector3d operator*(const Eigen::Vector3d& x) const { return scale * (rotation * x) + translation; }
+  /// a * b applies b first.
+  Similarity operator*(const Similarity& b) const;
+};
+
+/// The similarity that a homogeneous matrix stands for; its rotation is made orthonormal. Throws UnsupportedError where
+/// the linear part deviates by more than 1e-3 from a rotation times a positive scale.
+Similarity similarity_from(const Eigen::Matrix4d& matrix);
+
+/// Angle of a rotation in [0, pi]; exact also for tiny angles.
+double rotation_angle_rad(const Eigen::Matrix3d& rotation);
+
+/// The rotation by |axis_angle_rad| about that axis.
+Eigen::Matrix3d rotation_from(const Eigen::Vector3d& axis_angle_rad);
+
+}  // namespace cmap

@@ -1,0 +1,62 @@
+#include "cmap/geometry/similarity.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <cmath>
+
+#include "cmap/core/error.hpp"
+
+namespace cmap {
+
+Eigen::Matrix4d Similarity::matrix() const {
+  Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
+  T.topLeftCorner<3, 3>() = linear();
+  T.topRightCorner<3, 1>() = translation;
+  return T;
+}
+
+Similarity Similarity::inverse() const {
+  Similarity inverse;
+  inverse.scale = 1.0 / scale;
+  inverse.rotation = rotation.transpose();
+  inverse.translation = -inverse.scale * (inverse.rotation * translation);
+  return inverse;
+}
+
+Similarity Similarity::operator*(const Similarity& b) const {
+  return {scale * b.scale, rotation * b.rotation, *this * b.translation};
+}
+
+Similarity similarity_from(const Eigen::Matrix4d& matrix) {
+  constexpr double kTolerance = 1e-3;
+  const Eigen::Matrix3d linear = matrix.topLeftCorner<3, 3>();
+  const double scale = std::cbrt(linear.determinant());
+  if (!matrix.allFinite() || !(scale > 0.0) || matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
+    throw UnsupportedError("the 4x4 matrix is no rotation times a positive scale with a translation");
+  }
+  const Eigen::Matrix3d rotation = nearest_rotation(linear / scale);
+  const double deviation = (linear / scale - rotation).cwiseAbs().maxCoeff();
+  if (!(deviation <= kTolerance)) {
+    throw UnsupportedError(
+        fmt::format("the linear part of the 4x4 matrix deviates by {:.3g} from a rotation times a "
+                    "scale; {:g} accepted",
+                    deviation, kTolerance));
+  }
+  return {scale, rotation, matrix.topRightCorner<3, 1>()};
+}
+
+double rotation_angle_rad(const Eigen::Matrix3d& r) {
+  const Eigen::Vector3d twice_sine(r(2, 1) - r(1, 2), r(0, 2) - r(2, 0), r(1, 0) - r(0, 1));
+  return std::atan2(twice_sine.norm(), r.trace() - 1.0);
+}
+
+Eigen::Matrix3d rotation_from(const Eigen::Vector3d& axis_angle_rad) {
+  const double angle = axis_angle_rad.norm();
+  if (angle == 0.0) return Eigen::Matrix3d::Identity();
+  return Eigen::AngleAxisd(angle, axis_angle_rad / angle).toRotationMatrix();
+}
+
+}  // namespace cmap

@@ -1,0 +1,385 @@
+#include "cmap/board/comparison.hpp"
+
+#include "io/io_testing.hpp"
+#include "report/report_testing.hpp"
+
+namespace cmap {
+namespace {
+
+using test::options_for;
+using test::painted_sheet;
+using test::refusal_of;
+using test::report_of;
+using test::small_map;
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using Json = nlohmann::ordered_json;
+
+Json some_report() {
+  static const Json report = report_of(painted_sheet(400, 1), painted_sheet(300, 2));
+  return report;
+}
+
+SavedReport saved(const std::string& name, const Json& report) { return {name + ".json", name, report}; }
+
+/// Two reports that differ in what `change` does to the second.
+template <class Change>
+std::string refusal_for(Change&& change) {
+  Json other = some_report();
+  change(other);
+  return refusal_of<UsageError>([&] { require_comparable({saved("a", some_report()), saved("b", other)}); });
+}
+
+TEST(RequireComparable, TakesWhatCompares) {
+  EXPECT_EQ(refusal_for([](Json&) {}), "");
+  EXPECT_EQ(refusal_for([](Json& r) { r["parameters"]["metrics"] = {"color"}; }), "") << "chosen, not changed";
+  EXPECT_EQ(refusal_for([](Json& r) { r["parameters"]["lcr-curve"] = true; }), "");
+  EXPECT_EQ(refusal_for([](Json& r) { r["metrics"].erase("chamfer"); }), "");
+}
+
+TEST(RequireComparable, RefusesOtherParameters) {
+  EXPECT_EQ(
+      refusal_for([](Json& r) {
+        r["parameters"]["lcr-tau"] = 0.2;
+        r["parameters"]["voxel"] = 0.05;
+      }),
+      "a.json and b.json have different parameters: lcr-tau is 0.1 and 0.2; voxel is null and 0.05; evaluate both "
+      "maps with the same ones");
+  EXPECT_THAT(refusal_for([](Json& r) { r["parameters"]["new-one"] = 1; }), HasSubstr("new-one is missing and 1"));
+}
+
+TEST(RequireComparable, RefusesAnotherReference) {
+  const std::string message = refusal_for([](Json& r) { r["inputs"]["reference"]["sha256"] = std::string(64, 'b'); });
+  EXPECT_THAT(message, HasSubstr("a.json and b.json have different references: ref.ply (SHA-256 aaaaaaaaaaaa...) and"));
+  EXPECT_THAT(message, HasSubstr("cmap_leaderboard"));
+}
+
+TEST(RequireComparable, RefusesOtherDefinitions) {
+  EXPECT_THAT(refusal_for([](Json& r) { r["metrics"]["chamfer"]["unit"] = "mm"; }),
+              HasSubstr("a.json and b.json define chamfer differently: unit is \"m\" and \"mm\""));
+  EXPECT_THAT(refusal_for([](Json& r) { r["metrics"]["overlap"]["better"] = "lower"; }), HasSubstr("define overlap"));
+  EXPECT_THAT(refusal_for([](Json& r) { r["metrics"]["accuracy"]["per_threshold"].erase(1); }),
+              HasSubstr("define accuracy differently: levels is"));
+}
+
+TEST(RequireComparable, AMapWithoutColorComparesWithOneThatHasIt) {
+  EXPECT_EQ(refusal_for([](Json& r) {
+              r["metrics"]["color_distance"] = {{"value", nullptr},
+                                                {"unit", "unit RGB"},
+                                                {"better", "lower"},
+                                                {"symbol", "CD"},
+                                                {"parameters", Json::object()}};
+            }),
+            "");
+}
+
+/// A report as cmap 0.1.0 wrote it, before it is completed: the given color consistency, in voxels of that edge.
+Json earlier_report(double ccs_voxel_m = 0.2) {
+  Json report = some_report();
+  report["schema"] = "cmap.report/1";
+  report["tool"]["version"] = "0.1.0";
+  report["parameters"].erase("ccs-singletons");
+  report["parameters"]["ccs-voxel"] = ccs_voxel_m;
+  report["metrics"]["color_consistency"]["parameters"] = {{"voxel_m", ccs_voxel_m}, {"min_points", 2}};
+  return report;
+}
+
+/// Read from a file, as it would be.
+SavedReport read_back(const std::string& name, const Json& report) {
+  const testing::TempFolder folder;
+  SavedReport saved_report = read_report(folder.write(name + ".json", report.dump()));
+  saved_report.name = name;
+  saved_report.path = name + ".json";
+  return saved_report;
+}
+
+/// A report of today whose color consistency is in voxels of that edge.
+Json report_with(double ccs_voxel_m, const char* singletons) {
+  Json report = some_report();
+  report["parameters"]["ccs-voxel"] = ccs_voxel_m;
+  report["parameters"]["ccs-singletons"] = singletons;
+  report["metrics"]["color_consistency"]["parameters"] = {
+      {"voxel_m", ccs_voxel_m}, {"singletons", singletons}, {"min_points", 2}};
+  return report;
+}
+
+TEST(ReadReport, AnEarlierOneSaysWhatItsColorConsistencyWas) {
+  const Json report = read_back("a", earlier_report()).json;
+  EXPECT_EQ(report.at("schema"), "cmap.report/1");
+  EXPECT_EQ(report.at("parameters").at("ccs-singletons"), "exclude");
+  EXPECT_EQ(report.at("metrics").at("color_consistency").at("parameters").at("singletons"), "exclude");
+  Json bare = earlier_report();
+  bare["parameters"].erase("index");  // as an option that came later
+  EXPECT_EQ(read_back("a", bare).json.at("parameters").at("index"), "bvh");
+}
+
+TEST(RequireComparable, EarlierColorConsistencyComparesOnlyWithItsLike) {
+  const SavedReport earlier = read_back("a", earlier_report());
+  const auto refusal = [&](const Json& now, const ComparisonOptions& options) {
+    return refusal_of<UsageError>([&] { require_comparable({earlier, saved("b", now)}, options); });
+  };
+  EXPECT_EQ(refusal(report_with(0.2, "exclude"), {}), "");
+  const std::string message = refusal(report_with(0.1, "zero"), {});
+  EXPECT_THAT(message, HasSubstr("ccs-voxel is 0.2 and 0.1"));
+  EXPECT_THAT(message, HasSubstr("ccs-singletons is \"exclude\" and \"zero\""));
+  EXPECT_THAT(message, HasSubstr("versions 0.1.0 and"));
+  EXPECT_THAT(message, HasSubstr("--metrics"));
+  EXPECT_EQ(refusal(report_with(0.1, "zero"), {{"geometry"}, {}}), "") << "left out";
+  EXPECT_THAT(refusal(report_with(0.1, "zero"), {{"chamfer", "CCS"}, {}}), HasSubstr("ccs-voxel"));
+}
+
+TEST(RequireComparable, RefusesEntropiesFromBeforeAndSince) {
+  Json earlier = report_of(painted_sheet(400, 1), painted_sheet(300, 2), options_for({"mme", "chamfer"}));
+  const Json now = earlier;
+  earlier["schema"] = "cmap.report/1";
+  earlier["tool"]["version"] = "0.1.0";
+  const std::vector<SavedReport> reports{read_back("a", earlier), saved("b", now)};
+  EXPECT_THAT(
+      refusal_of<UsageError>([&] { require_comparable(reports); }),
+      HasSubstr("a.json and b.json define mean_map_entropy differently: before, points in neighborhoods that are "
+                "flat to rounding counted; they come from versions 0.1.0 and "));
+  EXPECT_EQ(refusal_of<UsageError>([&] { require_comparable(reports, {{"chamfer"}, {}}); }), "");
+  EXPECT_EQ(refusal_of<UsageError>([&] { require_comparable({reports[0], reports[0]}); }), "") << "both from before";
+}
+
+TEST(VersionNotes, SayWhatMayDiffer) {
+  const std::vector<SavedReport> reports{read_back("a", earlier_report()), saved("b", report_with(0.2, "exclude"))};
+  EXPECT_TRUE(version_notes({reports[0], reports[0]}, {}).empty());
+  const std::string version = some_report()["tool"]["version"];
+  const std::string first =
+      "version of cmap: 0.1.0 for a; " + version + " for b; what changed between them is in CHANGELOG.md";
+  EXPECT_THAT(version_notes(reports, {{"chamfer"}, {}}), ::testing::ElementsAre(first));
+  EXPECT_THAT(version_notes(reports, {{"fitness", "overlap"}, {}}),
+              ::testing::ElementsAre(first,
+                                     "in the earlier version a distance within rounding of the threshold did not count "
+                                     "as at it: fitness, overlap"));
+  const std::string table = format_comparison(reports, {{"fitness"}, {}}, ComparisonFormat::kText);
+  for (const std::string& note : version_notes(reports, {{"fitness"}, {}})) EXPECT_THAT(table, HasSubstr(note));
+}
+
+TEST(RequireComparable, OnlyWhatBearsOnTheMetricsCounts) {
+  Json other = some_report();
+  other["parameters"]["lcr-radius"] = 0.1;
+  other["metrics"]["local_color_recall"]["parameters"]["radius_m"] = 0.1;
+  const auto refusal = [&](const ComparisonOptions& options) {
+    return refusal_of<UsageError>([&] { require_comparable({saved("a", some_report()), saved("b", other)}, options); });
+  };
+  EXPECT_THAT(refusal({}), HasSubstr("lcr-radius is 0.5 and 0.1"));
+  EXPECT_THAT(refusal({{"LCR"}, {}}), HasSubstr("lcr-radius"));
+  EXPECT_EQ(refusal({{"chamfer", "CCS"}, {}}), "");
+  other["parameters"]["voxel"] = 0.1;
+  EXPECT_THAT(refusal({{"chamfer"}, {}}), HasSubstr("voxel is null and 0.1")) << "bears on all";
+}
+
+TEST(OneMap, ComparesWithItsLike) {
+  const SavedReport a = read_back("a", test::map_report_of(painted_sheet(400, 1)));
+  const SavedReport b = read_back("b", test::map_report_of(painted_sheet(300, 2)));
+  require_comparable({a, b});
+  const std::string table = format_comparison({a, b}, {}, ComparisonFormat::kText);
+  EXPECT_THAT(table, ContainsRegex("color consistency +CCS +↓ +unit RGB\\^2 +[0-9.]+. +[0-9.]+."));
+  EXPECT_THAT(table, ContainsRegex("point spacing +m +[0-9.]+ +[0-9.]+\n")) << "neither is better";
+  EXPECT_THAT(table, Not(HasSubstr("SHA-256")));
+  EXPECT_EQ(refusal_of<UsageError>([&] {
+              require_comparable({a, saved("pair", some_report())});
+            }),
+            "pair.json is about a map and its reference and a.json about a map alone: they do not compare");
+}
+
+TEST(CheckReport, OfOneMap) {
+  Json report = test::map_report_of(painted_sheet(400, 1));
+  EXPECT_EQ(refusal_of<InputError>([&] { check_report(report, "r.json"); }), "");
+  report["alignment"] = Json::object();
+  EXPECT_EQ(refusal_of<InputError>([&] { check_report(report, "r.json"); }),
+            "r.json: damaged report: alignment is object, expected null");
+}
+
+TEST(CheckReport, NamesThePlaceOfTheDamage) {
+  const auto refusal = [](auto&& change) {
+    Json report = some_report();
+    change(report);
+    return refusal_of<InputError>([&] { check_report(report, "r.json"); });
+  };
+  EXPECT_EQ(refusal([](Json&) {}), "");
+  EXPECT_EQ(refusal([](Json& r) { r.erase("inputs"); }), "r.json: damaged report: it has no \"inputs\"");
+  EXPECT_EQ(refusal([](Json& r) { r["inputs"]["reference"]["sha256"] = 5; }),
+            "r.json: damaged report: inputs.reference.sha256 is number, expected text");
+  EXPECT_EQ(refusal([](Json& r) { r["metrics"]["accuracy"]["per_threshold"][1]["value"] = "0.1"; }),
+            "r.json: damaged report: metrics.accuracy.per_threshold[1].value is string, expected a number or null");
+  EXPECT_EQ(refusal([](Json& r) { r["metrics"]["chamfer"].erase("value"); }),
+            "r.json: damaged report: metrics.chamfer has no \"value\"");
+  EXPECT_EQ(refusal([](Json& r) { r["metrics"] = Json::array(); }),
+            "r.json: damaged report: metrics is array, expected an object");
+  EXPECT_EQ(refusal([](Json& r) { r["intervals"] = nullptr; }),
+            "r.json: damaged report: intervals is null, expected an object");
+  EXPECT_EQ(refusal([](Json& r) {
+              r["intervals"] = {{"replicates", 10u}, {"seed", 1u}, {"level", "0.95"}, {"blocks", Json::object()}};
+            }),
+            "r.json: damaged report: intervals.level is string, expected a number");
+}
+
+TEST(CheckReport, RefusesWhatIsNoReport) {
+  const auto refusal = [](const Json& json) { return refusal_of<UsageError>([&] { check_report(json, "r.json"); }); };
+  EXPECT_EQ(refusal(Json::parse("[1]")),
+            "r.json: is no report of cmap_eval: its schema is missing, expected \"cmap.report/2\" or an earlier one");
+  EXPECT_EQ(refusal({{"schema", "cmap.report/3"}}),
+            "r.json: is no report of cmap_eval: its schema is \"cmap.report/3\", expected \"cmap.report/2\" or an "
+            "earlier one");
+  EXPECT_THAT(refusal({{"schema", 2}}), HasSubstr("its schema is 2"));
+}
+
+std::vector<std::string> names_for(const std::vector<std::string>& paths, const std::vector<std::string>& names = {}) {
+  std::vector<SavedReport> reports;
+  for (const std::string& path : paths) reports.push_back({path, "", nullptr});
+  name_reports(reports, names);
+  std::vector<std::string> given;
+  for (const SavedReport& report : reports) given.push_back(report.name);
+  return given;
+}
+
+TEST(NameReports, TakesTheShortestEndsThatDiffer) {
+  using ::testing::ElementsAre;
+  EXPECT_THAT(names_for({"/x/a.json", "/y/b.json"}), ElementsAre("a", "b"));
+  EXPECT_THAT(names_for({"/x/r.json", "/y/r.json"}), ElementsAre("x/r", "y/r"));
+  EXPECT_THAT(names_for({"/m/x/r.json", "/n/x/r.json"}), ElementsAre("m/x/r", "n/x/r"));
+  EXPECT_THAT(names_for({"/x/a.json", "/y/b.json"}, {"Ours", "Theirs"}), ElementsAre("Ours", "Theirs"));
+}
+
+TEST(NameReports, RefusesNamesThatDoNotTellApart) {
+  const auto refusal = [](const std::vector<std::string>& paths, const std::vector<std::string>& names) {
+    return refusal_of<UsageError>([&] { names_for(paths, names); });
+  };
+  EXPECT_EQ(refusal({"/x/a.json", "/x/../x/a.json"}, {}), "/x/../x/a.json: is given twice");
+  EXPECT_EQ(refusal({"/x/a.json", "/y/b.json"}, {"one"}), "names: 1 for 2 reports");
+  EXPECT_EQ(refusal({"/x/a.json", "/y/b.json"}, {"one", "one"}), "names: \"one\" is given twice");
+  EXPECT_EQ(refusal({"/x/a.json", "/y/b.json"}, {"one", ""}), "/y/b.json: its name is empty");
+}
+
+/// Three reports whose Chamfer distances are 2, 1 and missing, and whose overlaps are 0.5, 0.5 and 0.25.
+std::vector<SavedReport> three_reports() {
+  std::vector<SavedReport> reports;
+  const std::vector<std::pair<Json, double>> values{{2.0, 0.5}, {1.0, 0.5}, {nullptr, 0.25}};
+  for (const auto& [chamfer, overlap] : values) {
+    Json report = some_report();
+    report["metrics"]["chamfer"]["value"] = chamfer;
+    report["metrics"]["overlap"]["value"] = overlap;
+    reports.push_back(saved(std::string(1, static_cast<char>('a' + reports.size())), report));
+  }
+  return reports;
+}
+
+std::string compared(const ComparisonOptions& options, ComparisonFormat format = ComparisonFormat::kText) {
+  return format_comparison(three_reports(), options, format);
+}
+
+TEST(FormatComparison, MarksBestAndSecondBestOfEachRow) {
+  const std::string table = compared({{"chamfer", "overlap"}, {}});
+  EXPECT_THAT(table, ContainsRegex("Chamfer distance +CD# +↓ +m +2.000\\+ +1.000\\* +-\n"));
+  EXPECT_THAT(table, ContainsRegex("overlap +Overlap +↑ +% +50.00\\* +50.00\\* +25.00\\+\n"));
+  EXPECT_THAT(table, HasSubstr("* best, + second best; - no value"));
+  EXPECT_THAT(table, Not(HasSubstr("accuracy")));
+}
+
+TEST(FormatComparison, OneRowForEachThreshold) {
+  const std::string table = compared({{"accuracy"}, {}});
+  for (const char* threshold : {"0.2", "0.1", "0.08", "0.05", "0.01"}) {
+    EXPECT_THAT(table, HasSubstr(std::string("accuracy <= ") + threshold + " m"));
+  }
+}
+
+TEST(FormatComparison, DifferencesSayWhatIsBetter) {
+  const std::string table = compared({{"chamfer", "overlap"}, 0});
+  EXPECT_THAT(table, HasSubstr("Better (+) or worse (-) than a\n"));
+  EXPECT_THAT(table, ContainsRegex("Chamfer distance .*\\+1.000 \\(\\+50.0 %\\) +-\n")) << "1 m less is better";
+  EXPECT_THAT(table, ContainsRegex("overlap .* 0 \\(0 %\\) +-25.00 \\(-50.0 %\\)\n")) << "in points of percent";
+  const std::string other = compared({{"chamfer"}, 1});
+  EXPECT_THAT(other, ContainsRegex("Chamfer distance .*-1.000 \\(-100.0 %\\) +-\n"));
+}
+
+TEST(FormatComparison, CsvHasAllDigitsAndNoZeros) {
+  EXPECT_EQ(compared({{"chamfer", "overlap"}, 0}, ComparisonFormat::kCsv),
+            "metric,part,at_m,unit,better,a,b,c,b: better by,\"b: better by, relative\",c: better by,\"c: better by, "
+            "relative\"\n"
+            "chamfer,,,m,lower,2,1,,1,0.5,,\n"
+            "overlap,,,1,higher,0.5,0.5,0.25,0,0,-0.25,-0.5\n");
+}
+
+/// The first is exact; the second is not, and the third has no color.
+std::string compared_with_an_exact_one(const ComparisonOptions& options, ComparisonFormat format) {
+  std::vector<SavedReport> reports = three_reports();
+  const auto fidelity = [&](std::size_t i) -> Json& { return reports[i].json["metrics"]["color_fidelity"]["value"]; };
+  fidelity(0) = nullptr;
+  reports[0].json["warnings"].push_back({{"id", "color_fidelity_infinite"}, {"message", "every color is exact"}});
+  fidelity(1) = 40.0;
+  fidelity(2) = nullptr;
+  return format_comparison(reports, options, format);
+}
+
+TEST(FormatComparison, AnInfiniteFidelityIsBest) {
+  const ComparisonOptions against_exact{{"CF"}, 0}, against_other{{"CF"}, 1};
+  EXPECT_THAT(compared_with_an_exact_one(against_exact, ComparisonFormat::kText),
+              ContainsRegex("color fidelity +CF +↑ +dB +∞\\* +40.00\\+ +-"));
+  EXPECT_THAT(compared_with_an_exact_one(against_exact, ComparisonFormat::kText),
+              ContainsRegex("color fidelity +CF +↑ +dB +-∞ +-\n"));
+  EXPECT_THAT(compared_with_an_exact_one(against_other, ComparisonFormat::kText),
+              ContainsRegex("color fidelity +CF +↑ +dB +\\+∞ +-\n"));
+  EXPECT_THAT(compared_with_an_exact_one(against_other, ComparisonFormat::kCsv),
+              HasSubstr("color_fidelity,,,dB,higher,inf,40,,inf,,,\n"));
+  EXPECT_THAT(compared_with_an_exact_one(against_exact, ComparisonFormat::kLatex), HasSubstr("$\\infty$"));
+  const std::string page = compared_with_an_exact_one(against_other, ComparisonFormat::kHtml);
+  EXPECT_THAT(page, HasSubstr("data-value=\"Infinity\"")) << "as a script reads it";
+  EXPECT_THAT(page, HasSubstr(">∞<"));
+}
+
+TEST(FormatComparison, TwoInfiniteFidelitiesAreTheSame) {
+  std::vector<SavedReport> reports = three_reports();
+  for (std::size_t i : {0, 1}) {
+    reports[i].json["metrics"]["color_fidelity"]["value"] = nullptr;
+    reports[i].json["warnings"].push_back({{"id", "color_fidelity_infinite"}, {"message", "every color is exact"}});
+  }
+  reports.pop_back();
+  const std::string table = format_comparison(reports, {{"CF"}, 0}, ComparisonFormat::kText);
+  EXPECT_THAT(table, ContainsRegex("∞\\* +∞\\*"));
+  EXPECT_THAT(table, ContainsRegex("color fidelity +CF +↑ +dB +0\n"));
+}
+
+TEST(FormatComparison, RecallStandsAboveItsCoverage) {
+  const std::string table = compared({{"LCR"}, {}});
+  EXPECT_LT(table.find("local color recall"), table.find("coverage (recall of any color)"));
+}
+
+TEST(FormatComparison, RefusesMetricsThatAreNotThere) {
+  EXPECT_THAT(refusal_of<UsageError>([] { compared({{"nonsense"}, {}}); }), HasSubstr("\"nonsense\" is unknown"));
+  EXPECT_THAT(refusal_of<UsageError>([] { compared({{"MME"}, {}}); }), HasSubstr("no report has any of MME"));
+}
+
+TEST(FormatComparison, NamesAlignmentsAndVersionsThatDiffer) {
+  std::vector<SavedReport> reports = three_reports();
+  reports[1].json["alignment"]["method"] = "given";
+  reports[2].json["tool"]["version"] = "9.9.9";
+  const std::string table = format_comparison(reports, {{"chamfer"}, {}}, ComparisonFormat::kText);
+  EXPECT_THAT(table, HasSubstr("alignment: given for b; none for a, c\n"));
+  EXPECT_THAT(table, HasSubstr("9.9.9 for c"));
+}
+
+TEST(FormatComparison, NamesFilesAndNoFolders) {
+  Json report = some_report();
+  report["inputs"]["reference"]["path"] = "/home/ann lee/maps/ref.ply";
+  for (const auto format :
+       {ComparisonFormat::kText, ComparisonFormat::kMarkdown, ComparisonFormat::kLatex, ComparisonFormat::kHtml}) {
+    const std::string text = format_comparison({saved("a", report)}, {}, format);
+    EXPECT_THAT(text, HasSubstr("reference ref.ply: ")) << static_cast<int>(format);
+    EXPECT_THAT(text, Not(HasSubstr("/home"))) << static_cast<int>(format);
+  }
+}
+
+TEST(FormatComparison, NamesCannotBreakThePage) {
+  std::vector<SavedReport> reports = three_reports();
+  reports[0].name = "<script>alert(1)</script>";
+  const std::string page = format_comparison(reports, {}, ComparisonFormat::kHtml);
+  EXPECT_THAT(page, Not(HasSubstr("<script>alert")));
+  EXPECT_THAT(page, HasSubstr("&lt;script&gt;alert(1)"));
+}
+
+}  // namespace
+}  // namespace cmap
