@@ -10,6 +10,7 @@
 
 #include "cmap/align/icp.hpp"
 #include "cmap/core/error.hpp"
+#include "cmap/geometry/order_statistics.hpp"
 #include "cmap/io/transform_file.hpp"
 #include "cmap/spatial/k_nearest.hpp"
 
@@ -23,12 +24,8 @@ double extent_m(const PointCloud& cloud, int axis) {
   Array<float> values(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) values[i] = cloud.positions[i][axis];
   const std::size_t tail = values.size() / 200;
-  const auto low = values.begin() + static_cast<std::ptrdiff_t>(tail);
-  const auto high = values.end() - 1 - static_cast<std::ptrdiff_t>(tail);
-  std::nth_element(values.begin(), low, values.end());
-  const double lowest = *low;
-  std::nth_element(values.begin(), high, values.end());
-  return *high - lowest;
+  const double lowest = value_at_rank(values, tail);
+  return value_at_rank(values, values.size() - 1 - tail) - lowest;
 }
 
 double median_spacing_m(const PointCloud& cloud) {
@@ -39,9 +36,7 @@ double median_spacing_m(const PointCloud& cloud) {
     const std::uint32_t other = nearest_two[2 * slot + 1];
     spacing_m[slot] = other == kNoNeighbor ? 0.0 : (index.points.offset(slot) - index.points.offset(other)).norm();
   }
-  const auto middle = spacing_m.begin() + static_cast<std::ptrdiff_t>(spacing_m.size() / 2);
-  std::nth_element(spacing_m.begin(), middle, spacing_m.end());
-  return *middle;
+  return upper_median(spacing_m);
 }
 
 /// Every k-th point, at most about `most`.

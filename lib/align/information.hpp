@@ -8,9 +8,6 @@
 
 namespace cmap {
 
-using Vector7d = Eigen::Matrix<double, 7, 1>;
-using Matrix7d = Eigen::Matrix<double, 7, 7>;
-
 /// Normal equations of one step x -> exp(scale) exp(rotation) (x - pivot) + pivot + translation. Parameters in order:
 /// rotation (rad), translation (m), log scale.
 struct NormalEquations {

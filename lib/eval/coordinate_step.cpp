@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cmap/core/sampled_indices.hpp"
+#include "cmap/geometry/order_statistics.hpp"
 
 namespace cmap {
 namespace {
@@ -46,10 +47,8 @@ std::array<Axis, 3> sampled_axes(const PointCloud& cloud) {
 
 /// The value that a tenth of them reach, so that single far points do not decide.
 double reached_by_share(std::vector<double> values) {
-  const auto place =
-      values.end() - std::max<std::ptrdiff_t>(1, std::lround(kShare * static_cast<double>(values.size())));
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
+  const long n_above = std::max(1L, std::lround(kShare * static_cast<double>(values.size())));
+  return value_at_rank(values, values.size() - static_cast<std::size_t>(n_above));
 }
 
 /// Whether all values are whole multiples of the step, as far as our own rounding lets one see.

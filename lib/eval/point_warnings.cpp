@@ -7,6 +7,7 @@
 
 #include "cmap/core/parallel.hpp"
 #include "cmap/core/sampled_indices.hpp"
+#include "cmap/geometry/order_statistics.hpp"
 #include "cmap/spatial/k_nearest.hpp"
 #include "plausibility.hpp"
 
@@ -16,12 +17,6 @@ namespace {
 constexpr std::size_t kSample = 2000;
 constexpr double kManyRepeated = 0.01;
 constexpr std::size_t kFewest = 20;  // points from which on shares and medians say something
-
-double upper_median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Distance to the nearest point at another place, 0 where none is among the neighbors.
 double nearest_elsewhere_m(const PointBlocks& points, std::size_t slot, std::span<const std::uint32_t> neighbors) {
@@ -118,7 +113,7 @@ SampledSpacing sampled_spacing(const Bvh& index) {
   SampledSpacing spacing{std::numeric_limits<double>::quiet_NaN(),
                          static_cast<double>(repeated) / static_cast<double>(slots.size())};
   if (distances_m.size() < kFewest) return spacing;
-  spacing.spacing_m = upper_median(std::move(distances_m));
+  spacing.spacing_m = upper_median(distances_m);
   return spacing;
 }
 
@@ -148,7 +143,7 @@ void warn_about_spacing(const SampledSpacing& reference, const NearestField& nea
   for (const std::size_t slot : sampled_indices(nearest_in_reference.sq_dist.size(), kSample)) {
     sq_dist.push_back(nearest_in_reference.sq_dist[slot]);
   }
-  const double spacings = std::sqrt(upper_median(std::move(sq_dist))) / reference.spacing_m;
+  const double spacings = std::sqrt(upper_median(sq_dist)) / reference.spacing_m;
   if (!(spacings > kOnItsPoints && spacings < kElsewhere)) return;
   std::vector<double> missed_m;
   for (const Record& level : fitness) {

@@ -4,21 +4,19 @@
 #include <limits>
 #include <stdexcept>
 
+#include "cmap/geometry/order_statistics.hpp"
+
 namespace cmap {
 
 Box3d core_box(const std::vector<Eigen::Vector3d>& sample) {
   if (sample.size() < kFewestForCore) throw std::invalid_argument("core_box: too few points");
-  const auto cut = static_cast<std::ptrdiff_t>(std::max<std::size_t>(1, sample.size() / 100));
+  const std::size_t cut = std::max<std::size_t>(1, sample.size() / 100);
   std::vector<double> values(sample.size());
   Box3d core;
   for (int axis = 0; axis < 3; ++axis) {
     std::ranges::transform(sample, values.begin(), [&](const Eigen::Vector3d& p) { return p[axis]; });
-    const auto low = values.begin() + cut;
-    const auto high = values.end() - cut - 1;
-    std::nth_element(values.begin(), low, values.end());
-    core.min[axis] = *low;
-    std::nth_element(values.begin(), high, values.end());
-    core.max[axis] = *high;
+    core.min[axis] = value_at_rank(values, cut);
+    core.max[axis] = value_at_rank(values, values.size() - 1 - cut);
   }
   return core;
 }

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <cmath>
@@ -46,17 +45,6 @@ Similarity similarity_from(const Eigen::Matrix4d& matrix) {
                     deviation, kTolerance));
   }
   return {scale, rotation, matrix.topRightCorner<3, 1>()};
-}
-
-double rotation_angle_rad(const Eigen::Matrix3d& r) {
-  const Eigen::Vector3d twice_sine(r(2, 1) - r(1, 2), r(0, 2) - r(2, 0), r(1, 0) - r(0, 1));
-  return std::atan2(twice_sine.norm(), r.trace() - 1.0);
-}
-
-Eigen::Matrix3d rotation_from(const Eigen::Vector3d& axis_angle_rad) {
-  const double angle = axis_angle_rad.norm();
-  if (angle == 0.0) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle, axis_angle_rad / angle).toRotationMatrix();
 }
 
 }  // namespace cmap

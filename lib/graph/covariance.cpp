@@ -109,7 +109,7 @@ std::vector<PoseGraph::Information> node_covariances(const PoseGraph& graph, std
 }
 
 std::vector<ScaledPoseGraph::Information> node_covariances(const ScaledPoseGraph& graph,
-                                                           std::span<const ScaledPose> poses,
+                                                           std::span<const Similarity> poses,
                                                            std::span<const std::size_t> nodes) {
   return covariances(graph, poses, nodes);
 }

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "cmap/geometry/rotation.hpp"
 #include "node_graph.hpp"
-#include "rotation.hpp"
 
 namespace cmap::graph {
 

@@ -28,9 +28,12 @@ Node node_of(const Eigen::Isometry3d& pose, const std::string& what) {
   return {pose.translation(), Eigen::Quaterniond(R).normalized(), 0.0};
 }
 
-Node node_of(const ScaledPose& pose, const std::string& what) {
+Node node_of(const Similarity& pose, const std::string& what) {
   if (!(pose.scale > 0.0) || !std::isfinite(pose.scale)) fail(fmt::format("{} has the scale {:g}", what, pose.scale));
-  Node node = node_of(pose.pose, what);
+  Eigen::Isometry3d rigid = Eigen::Isometry3d::Identity();
+  rigid.linear() = pose.rotation;
+  rigid.translation() = pose.translation;
+  Node node = node_of(rigid, what);
   node.log_scale = std::log(pose.scale);
   return node;
 }
@@ -129,7 +132,7 @@ NodeGraph convert(const Graph<Pose, kDim>& graph, std::span<const Pose> poses) {
 
 NodeGraph node_graph(const PoseGraph& graph, std::span<const Eigen::Isometry3d> poses) { return convert(graph, poses); }
 
-NodeGraph node_graph(const ScaledPoseGraph& graph, std::span<const ScaledPose> poses) { return convert(graph, poses); }
+NodeGraph node_graph(const ScaledPoseGraph& graph, std::span<const Similarity> poses) { return convert(graph, poses); }
 
 void store(const Node& node, Eigen::Isometry3d& pose) {
   pose.setIdentity();
@@ -137,9 +140,8 @@ void store(const Node& node, Eigen::Isometry3d& pose) {
   pose.translation() = node.translation;
 }
 
-void store(const Node& node, ScaledPose& pose) {
-  pose.scale = std::exp(node.log_scale);
-  store(node, pose.pose);
+void store(const Node& node, Similarity& pose) {
+  pose = {std::exp(node.log_scale), node.rotation.toRotationMatrix(), node.translation};
 }
 
 }  // namespace cmap::graph

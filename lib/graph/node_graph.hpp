@@ -6,9 +6,6 @@
 
 namespace cmap::graph {
 
-using Vector7d = Eigen::Matrix<double, 7, 1>;
-using Matrix7d = Eigen::Matrix<double, 7, 7>;
-
 /// A node of either kind of graph. SE(3) nodes keep log_scale 0.
 struct Node {
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
@@ -37,9 +34,9 @@ struct NodeGraph {
 
 /// The graph with its nodes at `poses`, checked as optimize() says.
 NodeGraph node_graph(const PoseGraph& graph, std::span<const Eigen::Isometry3d> poses);
-NodeGraph node_graph(const ScaledPoseGraph& graph, std::span<const ScaledPose> poses);
+NodeGraph node_graph(const ScaledPoseGraph& graph, std::span<const Similarity> poses);
 
 void store(const Node& node, Eigen::Isometry3d& pose);
-void store(const Node& node, ScaledPose& pose);
+void store(const Node& node, Similarity& pose);
 
 }  // namespace cmap::graph

@@ -140,12 +140,12 @@ double graph_cost(const PoseGraph& graph, std::span<const Eigen::Isometry3d> pos
   return cost_of(graph::node_graph(graph, poses));
 }
 
-double graph_cost(const ScaledPoseGraph& graph, std::span<const ScaledPose> poses) {
+double graph_cost(const ScaledPoseGraph& graph, std::span<const Similarity> poses) {
   return cost_of(graph::node_graph(graph, poses));
 }
 
 std::vector<Eigen::Isometry3d> chordal_poses(const PoseGraph& graph) { return chordal(graph); }
 
-std::vector<ScaledPose> chordal_poses(const ScaledPoseGraph& graph) { return chordal(graph); }
+std::vector<Similarity> chordal_poses(const ScaledPoseGraph& graph) { return chordal(graph); }
 
 }  // namespace cmap

@@ -6,7 +6,7 @@
 
 #include "cmap/align/trajectory.hpp"
 #include "cmap/core/error.hpp"
-#include "cmap/io/lidar_scan.hpp"
+#include "cmap/io/lidar_scan_file.hpp"
 #include "session_check.hpp"
 
 namespace cmap {

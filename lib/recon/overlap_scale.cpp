@@ -5,7 +5,7 @@
 
 #include "cmap/align/umeyama.hpp"
 #include "cmap/core/error.hpp"
-#include "median.hpp"
+#include "cmap/geometry/order_statistics.hpp"
 
 namespace cmap {
 namespace {

@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "cmap/core/error.hpp"
-#include "median.hpp"
+#include "cmap/geometry/order_statistics.hpp"
 #include "scale_correction.hpp"
 
 namespace cmap {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "cmap/core/error.hpp"
-#include "median.hpp"
+#include "cmap/geometry/order_statistics.hpp"
 
 namespace cmap {
 namespace {

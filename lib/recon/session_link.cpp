@@ -6,9 +6,9 @@
 #include "cmap/align/icp.hpp"
 #include "cmap/align/umeyama.hpp"
 #include "cmap/core/error.hpp"
+#include "cmap/geometry/order_statistics.hpp"
 #include "cmap/geometry/voxel_map.hpp"
 #include "cmap/recon/session_graph.hpp"
-#include "median.hpp"
 #include "shared_frames.hpp"
 
 namespace cmap {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cmap/io/trajectory_file.hpp"
+#include "cmap/geometry/trajectory.hpp"
 
 namespace cmap {
 

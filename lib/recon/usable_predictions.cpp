@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "cmap/core/error.hpp"
-#include "median.hpp"
+#include "cmap/geometry/order_statistics.hpp"
 
 namespace cmap {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cmap/io/capture.hpp"
-#include "cmap/io/session_predictions.hpp"
+#include "cmap/io/session_file.hpp"
 
 namespace cmap {
 

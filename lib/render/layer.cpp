@@ -11,6 +11,7 @@
 #include "cmap/core/round_number.hpp"
 #include "cmap/core/spelling.hpp"
 #include "cmap/geometry/color.hpp"
+#include "cmap/geometry/order_statistics.hpp"
 #include "cmap/geometry/voxel_map.hpp"
 #include "cmap/metrics/color_consistency.hpp"
 #include "cmap/metrics/wasserstein.hpp"
@@ -32,9 +33,7 @@ Array<Rgb8> painted(std::size_t n, ColorAt&& color_at_slot) {
 double percentile(Array<float> values, double share) {
   std::erase_if(values, [](float v) { return std::isnan(v); });
   if (values.empty()) return 0.0;
-  const auto rank = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), rank, values.end());
-  return static_cast<double>(*rank);
+  return value_at_rank(values, static_cast<std::size_t>(share * static_cast<double>(values.size() - 1)));
 }
 
 ColorScale scale_for(const Array<float>& values, ColorMap map, std::string unit, const LayerOptions& options) {

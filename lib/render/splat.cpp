@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cmap/core/parallel.hpp"
+#include "cmap/geometry/order_statistics.hpp"
 
 namespace cmap {
 namespace {
@@ -87,9 +88,7 @@ double typical_spacing_m(const PointBlocks& points) {
     // A surface through the block's box covers about its two longest sides.
     spacings.push_back(std::sqrt(std::max(sides[1], 0.25 * sides[2]) * sides[2] / static_cast<double>(kBlockSize)));
   }
-  const auto middle = spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2);
-  std::ranges::nth_element(spacings, middle);
-  return *middle;
+  return upper_median(spacings);
 }
 
 PixelMap splat(const PointBlocks& points, const Projection& projection, const SplatOptions& options) {

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "cmap/core/parallel.hpp"
+#include "cmap/geometry/order_statistics.hpp"
 
 namespace cmap {
 namespace {
@@ -28,9 +29,7 @@ Array<double> covered_m2_of_blocks(const PointBlocks& points) {
   constexpr double kLeastOfMedian = 0.01, kStray = 0.02;
   Array<double> ranked = areas;
   const auto at = [&](double share) {
-    const auto rank = ranked.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(ranked.size() - 1));
-    std::nth_element(ranked.begin(), rank, ranked.end());
-    return *rank;
+    return value_at_rank(ranked, static_cast<std::size_t>(share * static_cast<double>(ranked.size() - 1)));
   };
   const double least = std::max(kLeastOfMedian * at(0.5), 1e-100);
   const double most = std::max(at(1.0 - kStray), least);

@@ -8,8 +8,8 @@ using ::testing::HasSubstr;
 Eigen::Isometry3d moved(const Eigen::Isometry3d& pose, const Eigen::VectorXd& d) {
   return test::nudged(pose, d.head<3>(), d.segment<3>(3));
 }
-ScaledPose moved(const ScaledPose& pose, const Eigen::VectorXd& d) {
-  return {pose.scale * std::exp(d[6]), moved(pose.pose, d)};
+Similarity moved(const Similarity& pose, const Eigen::VectorXd& d) {
+  return test::with_scale(pose.scale * std::exp(d[6]), moved(test::rigid_part(pose), d));
 }
 
 /// Half the matrix of second differences of the cost by the small motions of all nodes but the first. Where all

@@ -50,9 +50,16 @@ inline PoseGraph exact_graph(std::size_t n, unsigned seed) {
   return graph;
 }
 
-inline ScaledPose relative(const ScaledPose& a, const ScaledPose& b) {
-  const Eigen::Isometry3d step = a.pose.inverse() * b.pose;
-  return {b.scale / a.scale, pose_of(step.linear(), step.translation() / a.scale)};
+/// A pose without its scale.
+inline Eigen::Isometry3d rigid_part(const Similarity& pose) { return pose_of(pose.rotation, pose.translation); }
+
+inline Similarity with_scale(double scale, const Eigen::Isometry3d& pose) {
+  return {scale, pose.linear(), pose.translation()};
+}
+
+inline Similarity relative(const Similarity& a, const Similarity& b) {
+  const Eigen::Isometry3d step = rigid_part(a).inverse() * rigid_part(b);
+  return {b.scale / a.scale, step.linear(), step.translation() / a.scale};
 }
 
 /// The same with a scale of its own for every node, from 1/3 to 3; node 0 has scale 1.
@@ -61,7 +68,7 @@ inline ScaledPoseGraph exact_scaled_graph(std::size_t n, unsigned seed) {
   ScaledPoseGraph graph;
   for (std::size_t i = 0; i < n; ++i) {
     const double scale = i == 0 ? 1.0 : std::pow(3.0, uniform_in(random, -1.0, 1.0));
-    graph.poses.push_back({scale, random_pose(random, 10.0)});
+    graph.poses.push_back(with_scale(scale, random_pose(random, 10.0)));
   }
   for (std::size_t i = 0; i < n; ++i) {
     for (const std::size_t step : {std::size_t{1}, std::size_t{3}}) {

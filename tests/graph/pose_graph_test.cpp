@@ -210,7 +210,7 @@ TEST(ScaledPoseGraph, ALoopOfScalesByHand) {
   const auto edge = [](std::size_t i, std::size_t j, double log_scale, double weight) {
     ScaledPoseGraph::Information information = ScaledPoseGraph::Information::Identity();
     information(6, 6) = weight;
-    return ScaledPoseGraph::Edge{i, j, {std::exp(log_scale), Eigen::Isometry3d::Identity()}, information, 0.0};
+    return ScaledPoseGraph::Edge{i, j, {.scale = std::exp(log_scale)}, information, 0.0};
   };
   graph.edges = {edge(0, 1, 0.2, 10.0), edge(1, 2, 0.3, 20.0), edge(2, 0, -0.2, 5.0)};
   const ScaledPoseGraphResult result = optimize(graph);
@@ -223,20 +223,20 @@ TEST(ScaledPoseGraph, RecoversScales) {
   const ScaledPoseGraph truth = test::exact_scaled_graph(30, 11);
   ScaledPoseGraph graph = truth;
   for (std::size_t i = 1; i < graph.poses.size(); ++i) graph.poses[i] = {};
-  const std::vector<ScaledPose> chordal = chordal_poses(graph);
+  const std::vector<Similarity> chordal = chordal_poses(graph);
   const ScaledPoseGraphResult result = optimize(graph);
   EXPECT_LT(result.final_cost, 1e-16);
   std::mt19937_64 random(12);
   for (std::size_t i = 1; i < graph.poses.size(); ++i) {
-    graph.poses[i] = {truth.poses[i].scale * test::uniform_in(random, 0.8, 1.25),
-                      test::nudged(truth.poses[i].pose, random, 0.2)};
+    const double scale = truth.poses[i].scale * test::uniform_in(random, 0.8, 1.25);
+    graph.poses[i] = test::with_scale(scale, test::nudged(test::rigid_part(truth.poses[i]), random, 0.2));
   }
   const ScaledPoseGraphResult near = optimize(graph, {GraphStart::kPoses});
   EXPECT_FALSE(near.chordal_start);
   for (std::size_t i = 0; i < graph.poses.size(); ++i) {
-    for (const ScaledPose& pose : {chordal[i], result.poses[i], near.poses[i]}) {
+    for (const Similarity& pose : {chordal[i], result.poses[i], near.poses[i]}) {
       EXPECT_NEAR(pose.scale, truth.poses[i].scale, 1e-8);
-      EXPECT_LT((pose.pose.matrix() - truth.poses[i].pose.matrix()).norm(), 1e-7);
+      EXPECT_LT((test::rigid_part(pose).matrix() - test::rigid_part(truth.poses[i]).matrix()).norm(), 1e-7);
     }
   }
 }
@@ -251,12 +251,12 @@ TEST(ScaledPoseGraph, WithScalesHeldItIsTheRigidGraph) {
     wide(6, 6) = kStiff;
     return wide;
   };
-  for (const auto& pose : rigid.poses) scaled.poses.push_back({1.0, pose});
+  for (const auto& pose : rigid.poses) scaled.poses.push_back(test::with_scale(1.0, pose));
   for (const auto& e : rigid.edges) {
-    scaled.edges.push_back({e.from, e.to, {1.0, e.T_from_to}, widened(e.information), e.cauchy_width});
+    scaled.edges.push_back({e.from, e.to, test::with_scale(1.0, e.T_from_to), widened(e.information), e.cauchy_width});
   }
   for (const auto& p : rigid.priors) {
-    scaled.priors.push_back({p.node, {1.0, p.T_world_node}, widened(p.information), p.cauchy_width});
+    scaled.priors.push_back({p.node, test::with_scale(1.0, p.T_world_node), widened(p.information), p.cauchy_width});
   }
   const PoseGraphResult a = optimize(rigid);
   const ScaledPoseGraphResult b = optimize(scaled);
@@ -264,7 +264,7 @@ TEST(ScaledPoseGraph, WithScalesHeldItIsTheRigidGraph) {
   EXPECT_NEAR(b.final_cost, a.final_cost, 1e-5 * a.final_cost);
   for (std::size_t i = 0; i < a.poses.size(); ++i) {
     EXPECT_NEAR(b.poses[i].scale, 1.0, 1e-5);
-    EXPECT_LT((b.poses[i].pose.matrix() - a.poses[i].matrix()).norm(), 1e-3);
+    EXPECT_LT((test::rigid_part(b.poses[i]).matrix() - a.poses[i].matrix()).norm(), 1e-3);
   }
 }
 

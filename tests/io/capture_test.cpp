@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <map>
 
-#include "cmap/io/lidar_scan.hpp"
+#include "cmap/io/lidar_scan_file.hpp"
 #include "io/capture_testing.hpp"
 
 namespace cmap::testing {

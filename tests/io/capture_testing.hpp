@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "cmap/io/session_predictions.hpp"
+#include "cmap/io/session_file.hpp"
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {

@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "cmap/io/capture.hpp"
-#include "cmap/io/lidar_scan.hpp"
+#include "cmap/io/lidar_scan_file.hpp"
 #include "io/capture_testing.hpp"
 #include "io/real_data.hpp"
 

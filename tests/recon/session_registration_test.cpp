@@ -1,7 +1,7 @@
 #include "cmap/recon/session_registration.hpp"
 
 #include "cmap/align/umeyama.hpp"
-#include "median.hpp"
+#include "cmap/geometry/order_statistics.hpp"
 #include "recon/recon_testing.hpp"
 
 namespace cmap {

@@ -7,9 +7,10 @@
 #include "cmap/core/parallel.hpp"
 #include "cmap/io/capture.hpp"
 #include "cmap/io/image_file.hpp"
-#include "cmap/io/lidar_scan.hpp"
+#include "cmap/io/lidar_scan_file.hpp"
 #include "cmap/io/point_cloud_file.hpp"
-#include "cmap/io/session_predictions.hpp"
+#include "cmap/io/session_file.hpp"
+#include "cmap/io/trajectory_file.hpp"
 #include "io/io_testing.hpp"
 #include "sim/sensor_testing.hpp"
 

@@ -6,6 +6,11 @@
 
 namespace cmap {
 
+/// Small changes of a similarity and their information: rotation, translation and log scale, in the order that the user
+/// says.
+using Vector7d = Eigen::Matrix<double, 7, 1>;
+using Matrix7d = Eigen::Matrix<double, 7, 7>;
+
 /// x_dst = scale rotation x_src + translation: a rigid motion where the scale is 1.
 struct Similarity {
   double scale = 1.0;
@@ -24,11 +29,5 @@ struct Similarity {
 /// The similarity that a homogeneous matrix stands for; its rotation is made orthonormal. Throws UnsupportedError where
 /// the linear part deviates by more than 1e-3 from a rotation times a positive scale.
 Similarity similarity_from(const Eigen::Matrix4d& matrix);
-
-/// Angle of a rotation in [0, pi]; exact also for tiny angles.
-double rotation_angle_rad(const Eigen::Matrix3d& rotation);
-
-/// The rotation by |axis_angle_rad| about that axis.
-Eigen::Matrix3d rotation_from(const Eigen::Vector3d& axis_angle_rad);
 
 }  // namespace cmap

@@ -6,13 +6,9 @@
 #include <string>
 #include <vector>
 
-namespace cmap {
+#include "cmap/geometry/similarity.hpp"
 
-/// A pose with a scale: x_world = scale * rotation * x_node + translation.
-struct ScaledPose {
-  double scale = 1.0;
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-};
+namespace cmap {
 
 /// Poses of nodes in one world, and what was measured between them. kDim: degrees of freedom of a node.
 ///
@@ -46,7 +42,7 @@ struct Graph {
 };
 
 using PoseGraph = Graph<Eigen::Isometry3d, 6>;  ///< SE(3)
-using ScaledPoseGraph = Graph<ScaledPose, 7>;   ///< Sim(3)
+using ScaledPoseGraph = Graph<Similarity, 7>;   ///< Sim(3)
 
 /// Where an optimization starts.
 enum class GraphStart {
@@ -75,7 +71,7 @@ struct GraphResult {
   std::vector<std::string> warnings;
 };
 using PoseGraphResult = GraphResult<Eigen::Isometry3d>;
-using ScaledPoseGraphResult = GraphResult<ScaledPose>;
+using ScaledPoseGraphResult = GraphResult<Similarity>;
 
 /// Minimizes the cost with Levenberg-Marquardt (Ceres; sparse Cholesky factors by Eigen on one thread, so that the
 /// result is the same for any number of threads and any BLAS). Thread-safe.
@@ -88,7 +84,7 @@ ScaledPoseGraphResult optimize(const ScaledPoseGraph& graph, const GraphOptions&
 
 /// The cost of the graph's edges and priors with its nodes at `poses`. Throws as optimize().
 double graph_cost(const PoseGraph& graph, std::span<const Eigen::Isometry3d> poses);
-double graph_cost(const ScaledPoseGraph& graph, std::span<const ScaledPose> poses);
+double graph_cost(const ScaledPoseGraph& graph, std::span<const Similarity> poses);
 
 /// Poses from linear least squares, whatever the graph's own poses are (those of fixed nodes excepted): scales from
 /// log s_j - log s_i = log s_ij, rotations from R_j = R_i R_ij in nine numbers each, made rotations afterwards
@@ -96,7 +92,7 @@ double graph_cost(const ScaledPoseGraph& graph, std::span<const ScaledPose> pose
 /// edge weighs as much as the mean of its information's diagonal; widths are ignored. Throws as optimize(), and
 /// UnsupportedError where the information leaves a node free.
 std::vector<Eigen::Isometry3d> chordal_poses(const PoseGraph& graph);
-std::vector<ScaledPose> chordal_poses(const ScaledPoseGraph& graph);
+std::vector<Similarity> chordal_poses(const ScaledPoseGraph& graph);
 
 /// Covariances of nodes at `poses`, the inverse of the Gauss-Newton information (edges with a width count by their
 /// weight rho'): of the error d in R_true = R Exp(d_r), t_true = t + d_t (world axes), log s_true = log s + d_s, in the
@@ -105,7 +101,7 @@ std::vector<ScaledPose> chordal_poses(const ScaledPoseGraph& graph);
 std::vector<PoseGraph::Information> node_covariances(const PoseGraph& graph, std::span<const Eigen::Isometry3d> poses,
                                                      std::span<const std::size_t> nodes);
 std::vector<ScaledPoseGraph::Information> node_covariances(const ScaledPoseGraph& graph,
-                                                           std::span<const ScaledPose> poses,
+                                                           std::span<const Similarity> poses,
                                                            std::span<const std::size_t> nodes);
 
 }  // namespace cmap

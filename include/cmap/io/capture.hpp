@@ -9,8 +9,9 @@
 
 #include "cmap/core/warning.hpp"
 #include "cmap/geometry/camera_model.hpp"
+#include "cmap/geometry/imu_sample.hpp"
+#include "cmap/geometry/trajectory.hpp"
 #include "cmap/io/faults.hpp"
-#include "cmap/io/trajectory_file.hpp"
 
 namespace cmap {
 
@@ -21,13 +22,6 @@ struct SessionPredictions;
 struct StampedFile {
   double time_s = 0.0;
   std::filesystem::path path;
-};
-
-/// One measurement of an IMU, in its own frame.
-struct ImuSample {
-  double time_s = 0.0;
-  Eigen::Vector3d angular_rate_radps;
-  Eigen::Vector3d specific_force_mps2;  ///< at rest: 9.8 m/s^2 upward
 };
 
 /// What capture.json says. T_a_b maps coordinates in b to a.

@@ -1,25 +1,15 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <filesystem>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "cmap/core/warning.hpp"
+#include "cmap/geometry/trajectory.hpp"
 #include "cmap/io/output_file.hpp"
 
 namespace cmap {
-
-/// Where something was at one time: x_world = rotation x_body + position.
-struct StampedPose {
-  double time_s = 0.0;
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m
-  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
-};
-
-/// Poses by increasing time.
-using Trajectory = std::vector<StampedPose>;
 
 /// A trajectory as a file gave it.
 struct TrajectoryFile {

@@ -3,9 +3,9 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 
+#include "cmap/geometry/lidar_scan.hpp"
 #include "cmap/geometry/point_cloud.hpp"
 #include "cmap/io/capture.hpp"
-#include "cmap/io/lidar_scan.hpp"
 
 namespace cmap {
 

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "cmap/geometry/point_cloud.hpp"
+#include "cmap/geometry/session_predictions.hpp"
 #include "cmap/geometry/similarity.hpp"
-#include "cmap/io/session_predictions.hpp"
 
 namespace cmap {
 

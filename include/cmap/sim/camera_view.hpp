@@ -4,7 +4,7 @@
 
 #include "cmap/core/array.hpp"
 #include "cmap/geometry/camera_model.hpp"
-#include "cmap/io/image_file.hpp"
+#include "cmap/geometry/rgb_image.hpp"
 #include "cmap/sim/scene.hpp"
 
 namespace cmap {

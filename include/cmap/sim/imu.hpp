@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "cmap/io/capture.hpp"
+#include "cmap/geometry/imu_sample.hpp"
 #include "cmap/sim/pose_spline.hpp"
 
 namespace cmap {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cmap/io/lidar_scan.hpp"
+#include "cmap/geometry/lidar_scan.hpp"
 #include "cmap/sim/pose_spline.hpp"
 #include "cmap/sim/scene.hpp"
 

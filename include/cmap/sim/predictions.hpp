@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cmap/geometry/camera_model.hpp"
-#include "cmap/io/session_predictions.hpp"
+#include "cmap/geometry/session_predictions.hpp"
 #include "cmap/sim/camera_view.hpp"
 
 namespace cmap {

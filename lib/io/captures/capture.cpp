@@ -5,7 +5,8 @@
 #include "bytes/csv_table.hpp"
 #include "captures/capture_json.hpp"
 #include "captures/session_files.hpp"
-#include "cmap/io/session_predictions.hpp"
+#include "cmap/io/session_file.hpp"
+#include "cmap/io/trajectory_file.hpp"
 
 namespace cmap {
 namespace fs = std::filesystem;

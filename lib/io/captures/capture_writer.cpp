@@ -5,10 +5,11 @@
 #include "captures/capture_json.hpp"
 #include "cmap/core/error.hpp"
 #include "cmap/io/capture.hpp"
-#include "cmap/io/lidar_scan.hpp"
+#include "cmap/io/lidar_scan_file.hpp"
 #include "cmap/io/output_file.hpp"
 #include "cmap/io/output_folder.hpp"
-#include "cmap/io/session_predictions.hpp"
+#include "cmap/io/session_file.hpp"
+#include "cmap/io/trajectory_file.hpp"
 
 namespace cmap {
 namespace fs = std::filesystem;

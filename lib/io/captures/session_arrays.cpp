@@ -6,7 +6,8 @@
 #include <numbers>
 
 #include "captures/picture_fit.hpp"
-#include "cmap/geometry/rotation_check.hpp"
+#include "cmap/geometry/order_statistics.hpp"
+#include "cmap/geometry/rotation.hpp"
 
 namespace cmap {
 namespace {
@@ -91,9 +92,7 @@ float median_depth(const SessionPredictions& session) {
   Array<float> depths;
   std::copy_if(session.depth.begin(), session.depth.end(), std::back_inserter(depths),
                [](float d) { return d > 0.0F; });
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  return *middle;
+  return upper_median(depths);
 }
 
 /// What values from `low` to `high` probably are, in place of [0,1].

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "clouds/array_store.hpp"
-#include "cmap/io/session_predictions.hpp"
+#include "cmap/geometry/session_predictions.hpp"
 
 namespace cmap {
 

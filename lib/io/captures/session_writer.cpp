@@ -3,7 +3,7 @@
 
 #include "bytes/csv_writer.hpp"
 #include "cmap/io/output_folder.hpp"
-#include "cmap/io/session_predictions.hpp"
+#include "cmap/io/session_file.hpp"
 #include "containers/npy_array.hpp"
 
 namespace cmap {

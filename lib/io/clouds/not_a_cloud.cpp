@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "clouds/point_names.hpp"
-#include "cmap/geometry/rotation_check.hpp"
+#include "cmap/geometry/rotation.hpp"
 
 namespace cmap {
 namespace {

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 
-#include "cmap/geometry/rotation_check.hpp"
+#include "cmap/geometry/rotation.hpp"
 
 namespace cmap {
 namespace {

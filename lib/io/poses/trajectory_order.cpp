@@ -6,6 +6,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "cmap/geometry/order_statistics.hpp"
+
 namespace cmap {
 namespace {
 
@@ -29,9 +31,7 @@ bool same_pose(const StampedPose& a, const StampedPose& b) {
 double median_step_s(const Trajectory& poses) {
   std::vector<double> steps_s;
   for (std::size_t i = 1; i < poses.size(); ++i) steps_s.push_back(std::abs(poses[i].time_s - poses[i - 1].time_s));
-  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
-  std::nth_element(steps_s.begin(), middle, steps_s.end());
-  return *middle;
+  return upper_median(steps_s);
 }
 
 const char* plural(std::size_t n, const char* one, const char* several) { return n == 1 ? one : several; }

@@ -4,7 +4,7 @@
 #include <cctype>
 #include <cmath>
 
-#include "cmap/geometry/rotation_check.hpp"
+#include "cmap/geometry/rotation.hpp"
 #include "cmap/io/number_text.hpp"
 
 namespace cmap {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "cmap/geometry/rotation_check.hpp"
+#include "cmap/geometry/rotation.hpp"
 #include "cmap/io/line_reader.hpp"
 #include "containers/npy_array.hpp"
 #include "poses/transform_numbers.hpp"

@@ -6,6 +6,7 @@
 
 #include "cmap/core/parallel.hpp"
 #include "cmap/geometry/color.hpp"
+#include "cmap/geometry/order_statistics.hpp"
 
 namespace cmap {
 namespace {
@@ -98,10 +99,7 @@ double median_depth_m(const Array<float>& depth_m) {
   for (const float d : depth_m) {
     if (std::isfinite(d)) finite.push_back(d);
   }
-  if (finite.empty()) return 1.0;
-  const auto middle = finite.begin() + static_cast<std::ptrdiff_t>(finite.size() / 2);
-  std::ranges::nth_element(finite, middle);
-  return *middle;
+  return finite.empty() ? 1.0 : upper_median(finite);
 }
 
 void draw_scan(Panel panel, std::span<const Eigen::Vector3f> scan) {

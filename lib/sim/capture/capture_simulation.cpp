@@ -18,6 +18,7 @@
 #include "cmap/io/image_file.hpp"
 #include "cmap/io/output_file.hpp"
 #include "cmap/io/point_cloud_file.hpp"
+#include "cmap/io/trajectory_file.hpp"
 #include "cmap/sim/network_input.hpp"
 #include "cmap/sim/random_stream.hpp"
 #include "cmap/sim/seen_surface.hpp"

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "cmap/io/trajectory_file.hpp"
+#include "cmap/geometry/trajectory.hpp"
 #include "cmap/sim/capture_options.hpp"
 
 namespace cmap {

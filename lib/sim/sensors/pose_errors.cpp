@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "cmap/geometry/rotation.hpp"
 #include "cmap/sim/random_stream.hpp"
 
 namespace cmap {
@@ -13,10 +14,7 @@ Eigen::Vector3d normals(RandomStream& random) {
 }
 
 Eigen::Matrix3d turn_of(const Eigen::Vector3d& angles_deg) {
-  const Eigen::Vector3d angles = angles_deg * (std::numbers::pi / 180.0);
-  const double angle = angles.norm();
-  if (angle == 0.0) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle, angles / angle).toRotationMatrix();
+  return rotation_from(angles_deg * (std::numbers::pi / 180.0));
 }
 
 /// The motion from one frame to the next, a little wrong.

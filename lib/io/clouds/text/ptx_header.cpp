@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "cmap/geometry/rotation_check.hpp"
+#include "cmap/geometry/rotation.hpp"
 #include "cmap/io/number_text.hpp"
 
 namespace cmap {

@@ -1,4 +1,4 @@
-#include "cmap/io/session_predictions.hpp"
+#include "cmap/io/session_file.hpp"
 
 #include "bytes/csv_table.hpp"
 #include "bytes/input_json.hpp"

@@ -1,4 +1,4 @@
-#include "cmap/io/lidar_scan.hpp"
+#include "cmap/io/lidar_scan_file.hpp"
 
 #include "containers/lzf_codec.hpp"
 #include "io/capture_testing.hpp"

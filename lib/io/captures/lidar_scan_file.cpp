@@ -1,4 +1,4 @@
-#include "cmap/io/lidar_scan.hpp"
+#include "cmap/io/lidar_scan_file.hpp"
 
 #include <algorithm>
 #include <cmath>

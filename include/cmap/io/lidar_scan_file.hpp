@@ -1,21 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <cstdint>
 #include <filesystem>
 
-#include "cmap/core/array.hpp"
+#include "cmap/geometry/lidar_scan.hpp"
 
 namespace cmap {
-
-/// One scan, every point in the LiDAR frame at the point's own time. Optional arrays are as long as positions or empty.
-struct LidarScan {
-  double timestamp_s = 0.0;
-  Array<Eigen::Vector3f> positions;  ///< m
-  Array<float> intensity;            ///< as the sensor gives it
-  Array<float> time_s;               ///< from timestamp_s; empty: motion-compensated at timestamp_s
-  Array<std::uint16_t> ring;         ///< channel of the sensor
-};
 
 /// Reads a PCD file (ascii, binary, compressed) with x y z and, by these names, intensity, time and ring; other fields
 /// are stepped over. Points whose position, time or intensity is not finite are dropped; none left is an empty scan, as

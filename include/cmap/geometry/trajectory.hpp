@@ -1,0 +1,18 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+namespace cmap {
+
+/// Where something was at one time: x_world = rotation x_body + position.
+struct StampedPose {
+  double time_s = 0.0;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+};
+
+/// Poses by increasing time.
+using Trajectory = std::vector<StampedPose>;
+
+}  // namespace cmap
