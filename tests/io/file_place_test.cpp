@@ -54,5 +54,16 @@ TEST(PlaceOfFile, EndsWhereLinksDoNot) {
   EXPECT_NO_THROW(place_of_file(folder / "a"));
 }
 
+TEST(WhatIsThere, IsSaidOfNamesThatCannotBeLookedAt) {
+  const TempFolder folder;
+  folder.write("a.ply", "ply");
+  EXPECT_TRUE(is_there(folder / "a.ply") && is_file(folder / "a.ply") && !is_folder(folder / "a.ply"));
+  EXPECT_TRUE(is_there(folder.path()) && !is_file(folder.path()) && is_folder(folder.path()));
+  const fs::path too_long = folder / std::string(300, 'a');
+  EXPECT_FALSE(is_there(too_long) || is_file(too_long) || is_folder(too_long));
+  EXPECT_EQ(paths_in(folder.path()), std::vector<fs::path>{folder / "a.ply"});
+  EXPECT_THROW(paths_in(too_long), InputError);
+}
+
 }  // namespace
 }  // namespace cmap::testing

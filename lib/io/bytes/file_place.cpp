@@ -1,5 +1,9 @@
 #include "cmap/io/file_place.hpp"
 
+#include <fmt/format.h>
+
+#include "cmap/core/error.hpp"
+
 namespace cmap {
 
 namespace fs = std::filesystem;
@@ -17,6 +21,32 @@ fs::path place_of_file(const fs::path& path) {
   }
   const fs::path folder = fs::weakly_canonical(place.parent_path(), error);
   return ((error ? place.parent_path() : folder) / place.filename()).lexically_normal();
+}
+
+bool is_there(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
+bool is_file(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+bool is_folder(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored);
+}
+
+std::vector<fs::path> paths_in(const fs::path& folder) {
+  std::vector<fs::path> paths;
+  std::error_code error;
+  for (auto entry = fs::directory_iterator(folder, error); !error && entry != fs::directory_iterator();
+       entry.increment(error)) {
+    paths.push_back(entry->path());
+  }
+  if (error) throw InputError(fmt::format("{}: cannot be looked into: {}", folder.string(), error.message()));
+  return paths;
 }
 
 }  // namespace cmap

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cmap/core/error.hpp"
+#include "cmap/io/file_place.hpp"
 
 namespace cmap {
 namespace {
@@ -38,8 +39,7 @@ void read_parsed_input_json(const Json& parsed, const std::string& source, const
 }
 
 void read_input_json_file(const std::filesystem::path& path, const std::string& kind, const JsonReader& read) {
-  if (!std::filesystem::exists(path))
-    throw InputError(fmt::format("{}: no such file; {} expected", path.string(), kind));
+  if (!is_there(path)) throw InputError(fmt::format("{}: no such file; {} expected", path.string(), kind));
   as_input([&] { read_json_file(path, kind, read); });
 }
 

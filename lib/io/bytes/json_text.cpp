@@ -57,7 +57,7 @@ void read_parsed_json(const Json& parsed, const std::string& source, const JsonR
 void read_json_file(const std::filesystem::path& path, const std::string& kind, const JsonReader& read) {
   const std::filesystem::path place = path == kStandardStream ? "/dev/stdin" : path;
   std::ifstream file(place, std::ios::binary);
-  if (!file || std::filesystem::is_directory(place)) {
+  if (!file || is_folder(place)) {
     throw UsageError(fmt::format("{}: cannot be read as {}", name_of_input(path), kind));
   }
   read_json(std::string{std::istreambuf_iterator<char>(file), {}}, name_of_input(path), read);

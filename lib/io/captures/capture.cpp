@@ -5,6 +5,7 @@
 #include "bytes/csv_table.hpp"
 #include "captures/capture_json.hpp"
 #include "captures/session_files.hpp"
+#include "cmap/io/file_place.hpp"
 #include "cmap/io/session_file.hpp"
 #include "cmap/io/trajectory_file.hpp"
 
@@ -33,7 +34,7 @@ std::vector<StampedFile> read_file_table(const fs::path& folder, const char* nam
     times.add(table.lines(), table.number(0));
     if (table.cell(1).empty()) table.lines().fail("no file is named");
     const fs::path path = folder / table.cell(1);
-    if (!fs::is_regular_file(path)) table.lines().fail("{} is no file", path.string());
+    if (!is_file(path)) table.lines().fail("{} is no file", path.string());
     files.push_back({table.number(0) + offset_s, path});
   });
   if (is_empty) source.fail("lists no file");
@@ -45,7 +46,7 @@ void read_part(Capture& capture, const char* name, Want want, const Faults& faul
                const std::function<void(const Faults&)>& read) {
   if (want == Want::kYes) {
     faults.attempt([&] { read(faults); });
-  } else if (want == Want::kIfUsable && fs::exists(capture.folder / name)) {
+  } else if (want == Want::kIfUsable && is_there(capture.folder / name)) {
     std::vector<std::string> found;
     const Faults all(found);
     all.attempt([&] { read(faults.goes_on() ? all : Faults()); });
@@ -81,14 +82,14 @@ Trajectory read_lio(const fs::path& path, std::vector<Warning>& warnings) {
 
 /// One frames.csv cannot be that of several NPZ files, though each would find it.
 void require_own_frames(const fs::path& folder, const std::vector<fs::path>& sessions) {
-  if (!fs::exists(folder / "frames.csv")) return;
+  if (!is_there(folder / "frames.csv")) return;
   std::size_t n_files = 0;
   std::vector<std::string> missing;
   for (const fs::path& session : sessions) {
-    if (fs::is_directory(session)) continue;
+    if (is_folder(session)) continue;
     ++n_files;
     const fs::path own = own_frames_of(session);
-    if (!fs::exists(own)) missing.push_back(own.filename().string());
+    if (!is_there(own)) missing.push_back(own.filename().string());
   }
   if (n_files < 2 || missing.empty()) return;
   throw InputError(fmt::format("{}: of which session? Beside several .npz each has a table of its own; missing: {}",
@@ -98,14 +99,13 @@ void require_own_frames(const fs::path& folder, const std::vector<fs::path>& ses
 /// Folders, and NPZ files; other files belong to these. What ends in .partial was never finished.
 std::vector<fs::path> find_sessions(const fs::path& folder, std::vector<Warning>& warnings) {
   std::vector<fs::path> sessions;
-  if (!fs::exists(folder)) return sessions;
-  if (!fs::is_directory(folder)) throw InputError(folder.string() + ": is no folder");
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const fs::path& path = entry.path();
+  if (!is_there(folder)) return sessions;
+  if (!is_folder(folder)) throw InputError(folder.string() + ": is no folder");
+  for (const fs::path& path : paths_in(folder)) {
     if (path.filename().string().starts_with(".")) continue;
     if (path.extension() == ".partial") {
       warnings.push_back({"partial_session", path.string() + ": was never finished, and is left out"});
-    } else if (entry.is_directory() || path.extension() == ".npz") {
+    } else if (is_folder(path) || path.extension() == ".npz") {
       sessions.push_back(path);
     }
   }
@@ -116,7 +116,7 @@ std::vector<fs::path> find_sessions(const fs::path& folder, std::vector<Warning>
 }  // namespace
 
 Capture open_capture(const fs::path& folder, const CaptureParts& parts, const Faults& faults) {
-  if (!fs::is_directory(folder)) throw InputError(folder.string() + ": is no folder; a capture expected");
+  if (!is_folder(folder)) throw InputError(folder.string() + ": is no folder; a capture expected");
   Capture capture;
   capture.folder = folder;
   CaptureDescription description;
@@ -133,10 +133,10 @@ Capture open_capture(const fs::path& folder, const CaptureParts& parts, const Fa
   read_part(capture, "lidar.csv", parts.scans, faults,
             [&](const Faults& found) { capture.scans = read_file_table(folder, "lidar.csv", 0.0, found); });
   const fs::path imu = folder / "imu.csv", lio = folder / "lio.tum", predictions = folder / "predictions";
-  read_part(capture, "imu.csv", fs::exists(imu) ? parts.imu : Want::kNo, faults, [&](const Faults& found) {
+  read_part(capture, "imu.csv", is_there(imu) ? parts.imu : Want::kNo, faults, [&](const Faults& found) {
     capture.imu = read_imu(imu, description.acceleration_unit_mps2, calibration.imu_time_offset_s, found);
   });
-  if (fs::exists(lio)) faults.attempt([&] { capture.lio = read_lio(lio, capture.warnings); });
+  if (is_there(lio)) faults.attempt([&] { capture.lio = read_lio(lio, capture.warnings); });
   if (parts.sessions == Want::kNo) return capture;
   faults.attempt([&] { capture.sessions = find_sessions(predictions, capture.warnings); });
   faults.attempt([&] { require_own_frames(predictions, capture.sessions); });

@@ -4,6 +4,7 @@
 #include "bytes/input_json.hpp"
 #include "captures/session_arrays.hpp"
 #include "captures/session_files.hpp"
+#include "cmap/io/file_place.hpp"
 #include "cmap/io/number_text.hpp"
 
 namespace cmap {
@@ -21,7 +22,7 @@ int original_size(const CsvTable& table, std::size_t column) {
 
 /// As many as there are in the arrays, where that is known; none where a row is faulty.
 std::vector<PredictionFrame> read_frames(const fs::path& path, std::size_t frame_count, const Faults& faults) {
-  if (!fs::exists(path)) {
+  if (!is_there(path)) {
     throw InputError(path.string() + ": no such file; the times of the session's frames expected there");
   }
   ByteSource source(path);

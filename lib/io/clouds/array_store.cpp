@@ -1,5 +1,7 @@
 #include "clouds/array_store.hpp"
 
+#include "cmap/io/file_place.hpp"
+
 namespace cmap {
 namespace {
 
@@ -8,14 +10,14 @@ constexpr std::string_view kSuffix = ".npy";
 }  // namespace
 
 ArrayStore::ArrayStore(const std::filesystem::path& folder_or_npz) : folder_(folder_or_npz) {
-  if (!std::filesystem::is_directory(folder_)) zip_.emplace(folder_);
+  if (!is_folder(folder_)) zip_.emplace(folder_);
 }
 
 ArrayStore::ArrayStore(std::string name, std::span<const std::byte> npz) { zip_.emplace(std::move(name), npz); }
 
 bool ArrayStore::has(std::string_view name) const {
   const std::string file = fmt::format("{}{}", name, kSuffix);
-  return zip_ ? zip_->find(file) != nullptr : std::filesystem::exists(folder_ / file);
+  return zip_ ? zip_->find(file) != nullptr : is_there(folder_ / file);
 }
 
 std::string ArrayStore::name_of(std::string_view name) const {

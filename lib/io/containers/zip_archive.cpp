@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "cmap/core/error.hpp"
+#include "cmap/io/file_place.hpp"
 
 namespace cmap {
 namespace {
@@ -123,8 +124,8 @@ std::uint32_t checksum(std::span<const std::byte> bytes) {
 }  // namespace
 
 ZipArchive::ZipArchive(const std::filesystem::path& path) : name_(path.string()) {
-  if (!std::filesystem::exists(path)) fail(name_, "no such file");
-  if (!std::filesystem::is_regular_file(path)) fail(name_, "is no regular file");
+  if (!is_there(path)) fail(name_, "no such file");
+  if (!is_file(path)) fail(name_, "is no regular file");
   file_.open(path, std::ios::binary);
   if (!file_) fail(name_, "cannot be opened");
   size_ = std::filesystem::file_size(path);
