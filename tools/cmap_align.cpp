@@ -8,6 +8,7 @@
 #include "cmap/align/align.hpp"
 #include "cmap/align/tanks_and_temples.hpp"
 #include "cmap/align/trajectory.hpp"
+#include "cmap/core/execution.hpp"
 #include "files.hpp"
 #include "program.hpp"
 
@@ -207,7 +208,7 @@ void deliver(const Arguments& a, const Result& result) {
 }
 
 cmap::ExitCode run(const CLI::App& app, const Arguments& a) {
-  const cmap::ThreadLimit limit(a.common.threads);
+  const cmap::ExecutionScope scope({.threads = a.common.threads});
   refuse_unused(app, a.method);
   cmap::refuse_overwriting({a.source, a.target, a.initial, a.times}, a.outputs());
   for (const std::string& output : a.outputs()) cmap::require_writable(output);

@@ -10,7 +10,7 @@
 
 #include "cmap/align/align.hpp"
 #include "cmap/align/trajectory.hpp"
-#include "cmap/core/parallel.hpp"
+#include "cmap/core/execution.hpp"
 #include "cmap/eval/map_error.hpp"
 #include "cmap/eval/map_evaluation.hpp"
 #include "cmap/eval/point_errors.hpp"
@@ -257,7 +257,7 @@ ExitCode run_pair(const Arguments& arguments, cmap::RunClock& clock) {
   const cmap::InputDescription about_reference = describe(reference), about_estimate = describe(estimate);
   cmap::Evaluation evaluation = blaming_files(arguments, [&] {
     return cmap::evaluate_by_protocol(std::move(reference.cloud), std::move(estimate.cloud), options, inputs,
-                                      clock.progress());
+                                      {.progress = clock.progress()});
   });
   cmap::warn_about_shifts(evaluation, arguments.reference, arguments.estimate);
   const auto report =
@@ -284,8 +284,8 @@ ExitCode run_map(const Arguments& arguments, cmap::RunClock& clock) {
   cmap::PointCloudFile map = clock.timed_reading(
       [&] { return cmap::read_point_cloud(arguments.reference, cmap::read_options(options, true)); });
   const cmap::InputDescription about_map = describe(map);
-  const cmap::MapEvaluation evaluation =
-      blaming_files(arguments, [&] { return cmap::evaluate_map(std::move(map.cloud), options, clock.progress()); });
+  const cmap::MapEvaluation evaluation = blaming_files(
+      arguments, [&] { return cmap::evaluate_map(std::move(map.cloud), options, {.progress = clock.progress()}); });
   const auto report = cmap::make_report(about_map, evaluation, clock.description_after(evaluation));
   const bool requirements_hold = check_requirements(requirements, evaluation);
   deliver(arguments, evaluation, report, {});
@@ -293,7 +293,7 @@ ExitCode run_map(const Arguments& arguments, cmap::RunClock& clock) {
 }
 
 ExitCode run(const Arguments& arguments, const std::string& command) {
-  const cmap::ThreadLimit limit(arguments.common.threads);
+  const cmap::ExecutionScope scope({.threads = arguments.common.threads});
   cmap::RunClock clock(command, arguments.common.quiet);
   cmap::refuse_overwriting(
       {arguments.reference, arguments.estimate, arguments.config, arguments.transform, arguments.initial,

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "cmap/board/leaderboard.hpp"
-#include "cmap/core/parallel.hpp"
+#include "cmap/core/execution.hpp"
 #include "cmap/core/progress.hpp"
 #include "files.hpp"
 #include "program.hpp"
@@ -53,7 +53,7 @@ void add_options(CLI::App& app, Arguments& a) {
 }
 
 ExitCode run(const Arguments& arguments) {
-  const cmap::ThreadLimit limit(arguments.common.threads);
+  const cmap::ExecutionScope scope({.threads = arguments.common.threads});
   const cmap::LeaderboardManifest manifest = cmap::read_manifest(arguments.manifest);
   cmap::LeaderboardRun leaderboard{arguments.data_root, arguments.output, [](const std::string&) {}, {}};
   std::optional<cmap::ProgressBar> bar;  // of the pair at hand
@@ -62,7 +62,7 @@ ExitCode run(const Arguments& arguments) {
       bar.reset();
       fmt::print(stderr, "{}\n", line);
     };
-    leaderboard.progress = [&](std::string_view stage, double done) {
+    leaderboard.execution.progress = [&](std::string_view stage, double done) {
       if (!bar) bar.emplace(true);
       bar->update(stage, done);
     };

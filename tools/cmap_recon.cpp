@@ -212,8 +212,9 @@ ExitCode check(const Arguments& a, const cmap::ReconstructionOptions& options) {
   if (a.capture.empty()) throw cmap::UsageError("CAPTURE is required");
   const cmap::CaptureCheck found = [&] {
     cmap::ProgressBar progress(!a.common.quiet);
-    return cmap::check_capture(a.capture, options, cmap::stage_from_name(a.stop_after),
-                               [&](std::string_view stage, double done) { progress.update(stage, done); });
+    return cmap::check_capture(
+        a.capture, options, cmap::stage_from_name(a.stop_after),
+        {.progress = [&](std::string_view stage, double done) { progress.update(stage, done); }});
   }();
   std::string text;
   for (const std::string& fault : found.faults) text += fmt::format("fault: {}\n", fault);
@@ -227,7 +228,7 @@ ExitCode check(const Arguments& a, const cmap::ReconstructionOptions& options) {
 }
 
 ExitCode run(const CLI::App& app, const Arguments& a, const std::string& command) {
-  const cmap::ThreadLimit limit(a.common.threads);
+  const cmap::ExecutionScope scope({.threads = a.common.threads});
   const cmap::ReconstructionOptions options = resolve_options(a);
   if (a.print_options) {
     cmap::print(cmap::to_json(options).dump(2) + "\n");
@@ -247,7 +248,7 @@ ExitCode run(const CLI::App& app, const Arguments& a, const std::string& command
   if (app.get_option("--only-session")->count() > 0) how.only_session = static_cast<std::size_t>(a.only_session);
   how.stages = fs::path(a.output) / "stages";
   how.resume = a.resume;
-  how.progress = [&](std::string_view stage, double done) { progress.update(stage, done); };
+  how.execution.progress = [&](std::string_view stage, double done) { progress.update(stage, done); };
   std::vector<fs::path> session_maps;
   if (a.session_maps) {
     how.session_map = [&](const std::string& session, const cmap::PointCloud& map) {

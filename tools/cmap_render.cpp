@@ -6,7 +6,7 @@
 #include <sstream>
 #include <variant>
 
-#include "cmap/core/parallel.hpp"
+#include "cmap/core/execution.hpp"
 #include "cmap/core/progress.hpp"
 #include "cmap/io/file_place.hpp"
 #include "cmap/render/figure.hpp"
@@ -189,7 +189,7 @@ void write_figure(const Arguments& a, const Scene& scene, const Plan& plan) {
 void write_turn(const Arguments& a, const Scene& scene, const Plan& plan, cmap::ProgressBar& progress) {
   const cmap::Camera camera = camera_of(a, scene, plan, scene.layers.size(), &cmap::turntable_camera_for);
   cmap::write_turntable(scene.layers, cmap::turntable_cameras(camera, a.frames), plan.options, a.turntable,
-                        [&](std::string_view stage, double done) { progress.update(stage, done); });
+                        {.progress = [&](std::string_view stage, double done) { progress.update(stage, done); }});
 }
 
 void draw(const Arguments& a, const Scene& scene, const Plan& plan, cmap::ProgressBar& progress) {
@@ -227,9 +227,9 @@ void draw_pair(const Arguments& a, const Plan& plan, cmap::ProgressBar& progress
   progress.update("read", 0.0);
   auto [reference, estimate] = cmap::read_both(a.map, a.estimate, cmap::read_options(plan.evaluation));
   const bool has_color = reference.cloud.has_color() && estimate.cloud.has_color();
-  const cmap::Evaluation evaluation =
-      cmap::evaluate(std::move(reference.cloud), std::move(estimate.cloud), evaluation_options(a, plan, has_color),
-                     T_ref_est, [&](std::string_view stage, double done) { progress.update(stage, done); });
+  const cmap::Evaluation evaluation = cmap::evaluate(
+      std::move(reference.cloud), std::move(estimate.cloud), evaluation_options(a, plan, has_color), T_ref_est,
+      {.progress = [&](std::string_view stage, double done) { progress.update(stage, done); }});
   std::vector<cmap::Layer> layers;
   for (const std::string& panel : a.panels.empty() ? cmap::standard_panels(evaluation) : a.panels)
     layers.push_back(cmap::make_layer(evaluation, panel, plan.layer));
@@ -241,7 +241,7 @@ void draw_pair(const Arguments& a, const Plan& plan, cmap::ProgressBar& progress
 }
 
 cmap::ExitCode run(const Arguments& a) {
-  const cmap::ThreadLimit limit(a.common.threads);
+  const cmap::ExecutionScope scope({.threads = a.common.threads});
   const Plan plan(a);
   cmap::ProgressBar progress(!a.common.quiet);
   a.estimate.empty() ? draw_map(a, plan, progress) : draw_pair(a, plan, progress);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "cmap/core/parallel.hpp"
+#include "cmap/core/execution.hpp"
 #include "cmap/core/progress.hpp"
 #include "cmap/sim/capture_simulation.hpp"
 #include "program.hpp"
@@ -60,7 +60,7 @@ cmap::CaptureOptions options_of(const CLI::App& app, const Arguments& a) {
 }
 
 cmap::ExitCode run(const CLI::App& app, const Arguments& a) {
-  const cmap::ThreadLimit limit(a.common.threads);
+  const cmap::ExecutionScope scope({.threads = a.common.threads});
   const cmap::CaptureOptions options = options_of(app, a);
   if (a.print_options) {
     cmap::print(cmap::to_json(options).dump(2) + "\n");
@@ -68,7 +68,8 @@ cmap::ExitCode run(const CLI::App& app, const Arguments& a) {
   }
   if (a.output.empty()) throw cmap::UsageError("--output is required");
   cmap::ProgressBar bar(!a.common.quiet);
-  cmap::simulate_capture(options, a.output, [&](std::string_view stage, double done) { bar.update(stage, done); });
+  cmap::simulate_capture(options, a.output,
+                         {.progress = [&](std::string_view stage, double done) { bar.update(stage, done); }});
   return cmap::ExitCode::kDone;
 }
 

@@ -91,7 +91,8 @@ double default_align_voxel_m(const PointCloud& target) {
 }
 
 Alignment align(const PointCloud& source, const PointCloud& target, const RegistrationMethod& method,
-                const AlignOptions& options) {
+                const AlignOptions& options, const Execution& execution) {
+  const ExecutionScope scope(execution);
   if (source.positions.empty() || target.positions.empty()) {
     throw std::invalid_argument("a registration needs points");
   }

@@ -99,7 +99,9 @@ void score(const PointCloud& source, const PointCloud& target, const Similarity&
 }  // namespace
 
 TanksAndTemplesResult tanks_and_temples(const PointCloud& source, const PointCloud& target,
-                                        const Eigen::Matrix4d& T_initial, const TanksAndTemplesOptions& options) {
+                                        const Eigen::Matrix4d& T_initial, const TanksAndTemplesOptions& options,
+                                        const Execution& execution) {
+  const ExecutionScope scope(execution);
   const double tau_m = options.tau_m;
   if (!(tau_m > 0.0) || !std::isfinite(tau_m)) throw UsageError(fmt::format("tau_m is {:g}: above 0 is needed", tau_m));
   if (options.most_points == 0) throw UsageError("most_points is 0: at least 1 is needed");

@@ -36,6 +36,8 @@ template <class Work>
 auto of_pair(Work&& work) {
   try {
     return work();
+  } catch (const Interrupted&) {
+    throw;
   } catch (const Error& error) {
     throw WorkFailure(error.what());
   }
@@ -112,9 +114,9 @@ Evaluated Runner::evaluate_files(const std::string& reference_path, const std::s
   reference.info.path = reference_path;  // as in the manifest
   estimate.info.path = estimate_path;
   const InputDescription about_reference = describe(reference), about_estimate = describe(estimate);
-  Evaluated evaluated{
-      evaluate_by_protocol(std::move(reference.cloud), std::move(estimate.cloud), manifest_.options, {}, run_.progress),
-      {}};
+  Evaluated evaluated{evaluate_by_protocol(std::move(reference.cloud), std::move(estimate.cloud), manifest_.options, {},
+                                           {.progress = run_.execution.progress}),
+                      {}};
   evaluated.report = make_report(about_reference, about_estimate, evaluated.evaluation, {});
   // Times would make two runs differ.
   evaluated.report["run"] = {{"command", command_for(reference_path, estimate_path, manifest_.options)}};
@@ -223,7 +225,8 @@ void refuse_inputs_below(const fs::path& output, const LeaderboardManifest& mani
 }  // namespace
 
 std::vector<LeaderboardPair> evaluate_leaderboard(const LeaderboardManifest& manifest, const LeaderboardRun& run) {
-  if (!fs::is_directory(run.data_root)) {
+  const ExecutionScope scope(run.execution);
+  if (!is_folder(run.data_root)) {
     throw InputError(fmt::format("{}: the data root is no folder", run.data_root.string()));
   }
   refuse_inputs_below(run.output, manifest, run.data_root);

@@ -10,6 +10,7 @@
 
 #include "cmap/board/comparison.hpp"
 #include "cmap/core/error.hpp"
+#include "cmap/io/file_place.hpp"
 #include "cmap/io/json_text.hpp"
 #include "cmap/io/output_folder.hpp"
 #include "cmap/io/sha256.hpp"
@@ -74,7 +75,7 @@ PairFolder::PairFolder(fs::path folder, std::vector<std::string> files)
 
 std::optional<Json> PairFolder::load(const Json& key, std::string& reason) const {
   reason.clear();
-  if (!fs::exists(folder_ / kRecord)) return std::nullopt;
+  if (!is_there(folder_ / kRecord)) return std::nullopt;
   try {
     const Json record = parsed_file(folder_ / kRecord);
     if (record.at("schema") != kRecordSchema) throw UsageError("of another version");
@@ -90,6 +91,8 @@ std::optional<Json> PairFolder::load(const Json& key, std::string& reason) const
     Json report = parsed_file(folder_ / "report.json");
     check_report(report, "report.json");
     return report;
+  } catch (const Interrupted&) {
+    throw;
   } catch (const Error& error) {
     reason = error.what();
   } catch (const Json::exception&) {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "cmap/core/error.hpp"
-#include "cmap/core/parallel.hpp"
+#include "cmap/core/execution.hpp"
 #include "cmap/metrics/catalog.hpp"
 #include "cmap/peers/peer_tool.hpp"
 #include "measurement.hpp"
@@ -101,15 +101,16 @@ void add_fairness(Evaluation& result, MetricInputs& inputs, std::span<const Metr
 }  // namespace
 
 Evaluation evaluate(PointCloud reference, PointCloud estimate, const EvaluationOptions& options,
-                    const Eigen::Matrix4d& T_ref_est, const ProgressSink& progress,
+                    const Eigen::Matrix4d& T_ref_est, const Execution& execution,
                     std::span<const Eigen::Vector3d> sensor_positions) {
+  const ExecutionScope scope(execution);
   if (options.observed == Observed::kSensor && sensor_positions.empty()) {
     throw UsageError("observed: \"sensor\" needs to know where the sensor was");
   }
   const MetricSelection selection = select_metrics(options);
   std::vector<Warning> warnings;
   std::vector<std::pair<std::string, double>> stage_seconds;
-  StageClock clock(stage_seconds, progress);
+  StageClock clock(stage_seconds);
 
   drop_missing_colors(reference);
   drop_missing_colors(estimate);

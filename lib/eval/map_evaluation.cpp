@@ -18,11 +18,12 @@ void check_color(const PointCloud& map, const MetricSelection& selection, std::v
 
 }  // namespace
 
-MapEvaluation evaluate_map(PointCloud map, const EvaluationOptions& options, const ProgressSink& progress) {
+MapEvaluation evaluate_map(PointCloud map, const EvaluationOptions& options, const Execution& execution) {
+  const ExecutionScope scope(execution);
   const MetricSelection selection = select_map_metrics(options);
   std::vector<Warning> warnings;
   std::vector<std::pair<std::string, double>> stage_seconds;
-  StageClock clock(stage_seconds, progress);
+  StageClock clock(stage_seconds);
 
   drop_missing_colors(map);
   check_color(map, selection, warnings);

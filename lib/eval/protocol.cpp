@@ -61,10 +61,12 @@ EvaluationOptions plain(EvaluationOptions options) {
 }  // namespace
 
 Evaluation evaluate_by_protocol(PointCloud reference, PointCloud estimate, const EvaluationOptions& options,
-                                const ProtocolInputs& inputs, const ProgressSink& progress) {
+                                const ProtocolInputs& inputs, const Execution& execution) {
+  const ExecutionScope scope(execution);
+  const Execution same_sink{.progress = execution.progress};
   std::vector<std::pair<std::string, double>> stages;
   const auto timed = [&](const char* stage, double done, auto&& work) {
-    if (progress) progress(stage, done);
+    report_progress(stage, done);
     const auto start = std::chrono::steady_clock::now();
     work();
     stages.emplace_back(stage, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
@@ -80,12 +82,12 @@ Evaluation evaluate_by_protocol(PointCloud reference, PointCloud estimate, const
   std::optional<SensitivityBand> band;
   if (options.sensitivity) {
     timed("sensitivity", 0.15,
-          [&] { band = sensitivity_band(reference, estimate, plain(options), T_ref_est, progress); });
+          [&] { band = sensitivity_band(reference, estimate, plain(options), T_ref_est, same_sink); });
   }
   std::vector<Eigen::Vector3d> sensor_positions = inputs.sensor_positions;
   for (Eigen::Vector3d& p : sensor_positions) p = (T_ref_est * p.homogeneous()).head<3>();
   Evaluation evaluation =
-      evaluate(std::move(reference), std::move(estimate), options, T_ref_est, progress, sensor_positions);
+      evaluate(std::move(reference), std::move(estimate), options, T_ref_est, same_sink, sensor_positions);
   evaluation.warnings.insert(evaluation.warnings.begin(), inputs.warnings.begin(), inputs.warnings.end());
   if (alignment) warn_of_alignment(*alignment, evaluation.warnings);
   evaluation.alignment = std::move(alignment);

@@ -63,12 +63,13 @@ Sensitivity SensitivityBand::found(const EvaluationOptions& options) const {
 
 SensitivityBand sensitivity_band(const PointCloud& reference, const PointCloud& estimate,
                                  const EvaluationOptions& options, const Eigen::Matrix4d& T_ref_est,
-                                 const ProgressSink& progress) {
+                                 const Execution& execution) {
+  const ExecutionScope scope(execution);
   SensitivityBand band;
   double done = 0.0;
   const std::vector<Eigen::Matrix4d> all = motions(options, centroid(estimate, T_ref_est));
   for (const Eigen::Matrix4d& motion : all) {
-    if (progress) progress("sensitivity", done / static_cast<double>(all.size()));
+    report_progress("sensitivity", done / static_cast<double>(all.size()));
     band.include(evaluate(reference, estimate, options, motion * T_ref_est).metrics);
     ++done;
   }

@@ -5,19 +5,18 @@
 #include <utility>
 #include <vector>
 
-#include "cmap/core/progress.hpp"
+#include "cmap/core/execution.hpp"
 
 namespace cmap {
 
 /// Times the stages of an evaluation and tells the user which one runs.
 class StageClock {
  public:
-  StageClock(std::vector<std::pair<std::string, double>>& seconds, const ProgressSink& progress)
-      : seconds_(seconds), progress_(progress) {}
+  explicit StageClock(std::vector<std::pair<std::string, double>>& seconds) : seconds_(seconds) {}
 
   template <class Work>
   void run(const char* stage, double done_before, Work&& work) {
-    if (progress_) progress_(stage, done_before);
+    report_progress(stage, done_before);
     const auto start = std::chrono::steady_clock::now();
     work();
     seconds_.emplace_back(stage, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
@@ -25,7 +24,6 @@ class StageClock {
 
  private:
   std::vector<std::pair<std::string, double>>& seconds_;
-  const ProgressSink& progress_;
 };
 
 }  // namespace cmap

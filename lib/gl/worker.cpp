@@ -2,9 +2,16 @@
 
 #include <utility>
 
+#include "cmap/core/execution.hpp"
+#include "cmap/core/parallel.hpp"
+
 namespace cmap {
 
-Worker::Worker() : thread_([this] { work(); }) {}
+Worker::Worker()
+    : thread_([this, threads = thread_count()] {
+        const ExecutionScope as_the_caller({.threads = threads});
+        work();
+      }) {}
 
 Worker::~Worker() {
   {

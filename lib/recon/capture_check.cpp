@@ -42,11 +42,11 @@ void check_scan_times(const Capture& capture, double max_gap_s, bool needed, Cap
                              times_of_scans_and_poses(capture, max_gap_s)));
 }
 
-void check_scans(const Capture& capture, const ProgressSink& progress, std::vector<std::string>& list) {
+void check_scans(const Capture& capture, std::vector<std::string>& list) {
   const Faults faults(list);
   std::size_t n_read = 0, n_points = 0, i = 0;
   for (const StampedFile& file : capture.scans) {
-    if (progress) progress("scans", static_cast<double>(i++) / static_cast<double>(capture.scans.size()));
+    report_progress("scans", static_cast<double>(i++) / static_cast<double>(capture.scans.size()));
     faults.attempt([&] {
       n_points += read_lidar_scan(file.path, file.time_s).positions.size();
       ++n_read;
@@ -59,7 +59,8 @@ void check_scans(const Capture& capture, const ProgressSink& progress, std::vect
 }  // namespace
 
 CaptureCheck check_capture(const fs::path& folder, const ReconstructionOptions& options, Stage last,
-                           const ProgressSink& progress) {
+                           const Execution& execution) {
+  const ExecutionScope scope(execution);
   CaptureCheck check;
   const Faults faults(check.faults);
   Capture capture;
@@ -70,12 +71,12 @@ CaptureCheck check_capture(const fs::path& folder, const ReconstructionOptions& 
   check_needed(capture, check);
   SessionCheck sessions(capture, options, check);
   for (std::size_t i = 0; i < capture.sessions.size(); ++i) {
-    if (progress) progress("sessions", static_cast<double>(i) / static_cast<double>(capture.sessions.size()));
+    report_progress("sessions", static_cast<double>(i) / static_cast<double>(capture.sessions.size()));
     sessions.add(i);
   }
   const bool needs_scans = needed.scans == Want::kYes;
   check_scan_times(capture, options.prefusion.max_gap_s, needs_scans, check);
-  check_scans(capture, progress, needs_scans ? check.faults : check.warnings);
+  check_scans(capture, needs_scans ? check.faults : check.warnings);
   check.summary = fmt::format("{} sessions of {} frames, {} poses, {} scans, {} pictures", capture.sessions.size(),
                               sessions.frames(), capture.lio.size(), capture.scans.size(), capture.images.size());
   return check;

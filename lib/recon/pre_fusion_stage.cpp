@@ -61,6 +61,8 @@ ReadSession read_and_place(const Capture& capture, std::size_t index, const Reco
       outcome.flags.push_back(fmt::format("{} of {} frames have no LiDAR-inertial pose",
                                           static_cast<std::ptrdiff_t>(poses.size()) - n_placed, poses.size()));
     }
+  } catch (const Interrupted&) {
+    throw;
   } catch (const Error& error) {
     outcome.dropped = error.what();
     session.predictions.reset();
@@ -119,7 +121,7 @@ void tell(const PreFusion& found, std::size_t k, const std::vector<std::optional
 }  // namespace
 
 std::vector<SessionState> pre_fuse_sessions(const Capture& capture, const ReconstructionOptions& options,
-                                            std::optional<std::size_t> only_session, const ProgressSink& progress) {
+                                            std::optional<std::size_t> only_session) {
   std::vector<SessionState> sessions;
   std::vector<std::vector<SessionFrame>> frames;  // of those that are kept
   std::vector<std::optional<ScaleRatio>> ratios;  // between one of these and the next
@@ -128,9 +130,8 @@ std::vector<SessionState> pre_fuse_sessions(const Capture& capture, const Recons
   SeenTimes seen;
   for (std::size_t index = 0; index < capture.sessions.size(); ++index) {
     if (only_session && *only_session != index) continue;
-    if (progress)
-      progress(stage_name(Stage::kPrefusion),
-               static_cast<double>(index) / static_cast<double>(capture.sessions.size()));
+    report_progress(stage_name(Stage::kPrefusion),
+                    static_cast<double>(index) / static_cast<double>(capture.sessions.size()));
     ReadSession session = read_and_place(capture, index, options);
     if (session.state.is_kept()) {
       const std::string copy = seen.add(session.state.outcome.name, times_of(*session.predictions));

@@ -146,9 +146,7 @@ void fuse(const Capture& capture, const ReconstructionOptions& options, const Re
   std::size_t k = 0;
   for (const SessionState& state : sessions) {
     if (!state.is_kept()) continue;
-    if (run.progress) {
-      run.progress(stage_name(Stage::kFusion), static_cast<double>(k) / static_cast<double>(result.poses.size()));
-    }
+    report_progress(stage_name(Stage::kFusion), static_cast<double>(k) / static_cast<double>(result.poses.size()));
     const PlacedSession& placed = result.poses[k++];
     const SessionPredictions session = read_corrected(capture, state);
     SessionSketch& sketch = result.sketches.emplace_back();
@@ -208,13 +206,14 @@ CaptureParts parts_needed(const ReconstructionOptions& options, Stage last) {
 }
 
 Reconstruction reconstruct(const Capture& capture, const ReconstructionOptions& options, const ReconstructionRun& run) {
+  const ExecutionScope scope(run.execution);
   check_inputs(capture, options, run);
   const StageFiles stages(run.stages, run.resume, run_key(capture, options, run));
   std::vector<SessionState> sessions;
   Reconstruction result;
   result.warnings = capture.warnings;
   const auto timed = [&](Stage stage, auto&& work) {
-    if (run.progress) run.progress(stage_name(stage), 0.0);
+    report_progress(stage_name(stage), 0.0);
     const auto start = std::chrono::steady_clock::now();
     work();
     result.stage_seconds.emplace_back(stage,
@@ -230,11 +229,11 @@ Reconstruction reconstruct(const Capture& capture, const ReconstructionOptions& 
     });
     result.poses = placed_of(sessions);
   };
-  staged(Stage::kPrefusion, [&] { sessions = pre_fuse_sessions(capture, options, run.only_session, run.progress); });
+  staged(Stage::kPrefusion, [&] { sessions = pre_fuse_sessions(capture, options, run.only_session); });
   require_enough(sessions);
   result.prefusion = result.poses;
   if (run.last >= Stage::kRegistration) {
-    staged(Stage::kRegistration, [&] { result.links = register_sessions(capture, options, sessions, run.progress); });
+    staged(Stage::kRegistration, [&] { result.links = register_sessions(capture, options, sessions); });
     result.registration = result.poses;
   }
   if (run.last >= Stage::kPoseGraph && options.pose_graph)

@@ -48,15 +48,15 @@ void register_one(const Capture& capture, const ReconstructionOptions& options, 
 }  // namespace
 
 std::vector<SessionLink> register_sessions(const Capture& capture, const ReconstructionOptions& options,
-                                           std::vector<SessionState>& sessions, const ProgressSink& progress) {
+                                           std::vector<SessionState>& sessions) {
   std::vector<SessionLink> links;
   std::optional<SessionPredictions> before;
   const SessionState* state_before = nullptr;
   std::size_t n_kept = 0;
   for (SessionState& state : sessions) {
     if (!state.is_kept()) continue;
-    if (progress)
-      progress(stage_name(Stage::kRegistration), static_cast<double>(n_kept) / static_cast<double>(sessions.size()));
+    report_progress(stage_name(Stage::kRegistration),
+                    static_cast<double>(n_kept) / static_cast<double>(sessions.size()));
     SessionPredictions session = read_corrected(capture, state);
     register_one(capture, options, session, state);
     if (before) {

@@ -39,10 +39,10 @@ SessionPredictions read_corrected(const Capture& capture, const SessionState& st
 
 /// Reads the sessions (one, or all), says what their poses and overlaps say of their scales, and places them.
 std::vector<SessionState> pre_fuse_sessions(const Capture& capture, const ReconstructionOptions& options,
-                                            std::optional<std::size_t> only_session, const ProgressSink& progress);
+                                            std::optional<std::size_t> only_session);
 
 /// Moves each session onto the LiDAR, and links those that follow each other.
 std::vector<SessionLink> register_sessions(const Capture& capture, const ReconstructionOptions& options,
-                                           std::vector<SessionState>& sessions, const ProgressSink& progress);
+                                           std::vector<SessionState>& sessions);
 
 }  // namespace cmap

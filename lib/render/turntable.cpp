@@ -19,9 +19,9 @@ namespace fs = std::filesystem;
 using FrameSink = std::function<void(const Image&, std::size_t index)>;
 
 void draw_frames(std::span<const Layer> layers, std::span<const Camera> cameras, const FigureOptions& options,
-                 const ProgressSink& progress, const FrameSink& take) {
+                 const FrameSink& take) {
   for (std::size_t i = 0; i < cameras.size(); ++i) {
-    if (progress) progress("frames", static_cast<double>(i) / static_cast<double>(cameras.size()));
+    report_progress("frames", static_cast<double>(i) / static_cast<double>(cameras.size()));
     take(draw_figure(layers, cameras[i], options), i);
   }
 }
@@ -70,13 +70,14 @@ void check_turntable_name(const fs::path& name) {
     throw UsageError(
         fmt::format("{}: a turntable is a video, .mp4 or .gif, or a folder without an extension", name.string()));
   }
-  if (fs::exists(folder)) throw UsageError(fmt::format("{}: exists already", name.string()));
+  if (is_there(folder)) throw OutputError(fmt::format("{}: exists already", name.string()));
 }
 
 void write_turntable(std::span<const Layer> layers, std::span<const Camera> cameras, const FigureOptions& options,
-                     const fs::path& name, const ProgressSink& progress) {
+                     const fs::path& name, const Execution& execution) {
+  const ExecutionScope scope(execution);
   check_turntable_name(name);
-  const auto draw = [&](const FrameSink& take) { draw_frames(layers, cameras, options, progress, take); };
+  const auto draw = [&](const FrameSink& take) { draw_frames(layers, cameras, options, take); };
   is_video_name(name) ? write_video(name, options, draw) : write_folder(without_slash(name), draw);
 }
 

@@ -4,7 +4,7 @@
 #include "align/real_clouds.hpp"
 #include "align/towns.hpp"
 #include "cmap/align/align.hpp"
-#include "cmap/core/parallel.hpp"
+#include "cmap/core/execution.hpp"
 #include "compatibility.hpp"
 #include "features.hpp"
 
@@ -139,7 +139,7 @@ TEST(Global, TheSameForAnyNumberOfThreads) {
   SKIP_WITHOUT_PCL();
   const PointCloud target = test::town(40, 20000, 10), source = test::town(40, 20000, 11);
   const Alignment all = global_registration(source, target);
-  const ThreadLimit one(1);
+  const ExecutionScope one({.threads = 1});
   EXPECT_EQ(global_registration(source, target).T_dst_src, all.T_dst_src);
 }
 

@@ -2,7 +2,7 @@
 
 #include "align/align_testing.hpp"
 #include "align/real_clouds.hpp"
-#include "cmap/core/parallel.hpp"
+#include "cmap/core/execution.hpp"
 
 namespace cmap {
 namespace {
@@ -105,7 +105,7 @@ TEST_P(Icp, TheOrderOfPointsDoesNotMatter) {
 TEST_P(Icp, TheSameForAnyNumberOfThreads) {
   const PointCloud target = room(20000, 12), source = room(20000, 13);
   const Alignment all = icp(source, target, small_motion(14).matrix(), options_for(GetParam()));
-  const ThreadLimit one(1);
+  const ExecutionScope one({.threads = 1});
   const Alignment single = icp(source, target, small_motion(14).matrix(), options_for(GetParam()));
   EXPECT_EQ(all.T_dst_src, single.T_dst_src);
   EXPECT_EQ(all.rmse_m, single.rmse_m);

@@ -2,7 +2,7 @@
 
 #include "align/align_testing.hpp"
 #include "align/towns.hpp"
-#include "cmap/core/parallel.hpp"
+#include "cmap/core/execution.hpp"
 
 namespace cmap {
 namespace {
@@ -126,7 +126,7 @@ TEST(Sim3Icp, KeepsTheStartWhereTooLittleMatches) {
 TEST(Sim3Icp, TheSameForAnyNumberOfThreads) {
   const PointCloud source = town(60, 20000, 15), target = town(50, 20000, 16);
   const Sim3Alignment all = sim3_icp(source, target, Eigen::Matrix4d::Identity(), Sim3IcpOptions::robust(0.5));
-  const ThreadLimit one(1);
+  const ExecutionScope one({.threads = 1});
   EXPECT_EQ(sim3_icp(source, target, Eigen::Matrix4d::Identity(), Sim3IcpOptions::robust(0.5)).T_dst_src,
             all.T_dst_src);
 }

@@ -1,6 +1,7 @@
 #include "cmap/align/umeyama.hpp"
 
 #include "align/align_testing.hpp"
+#include "cmap/core/execution.hpp"
 
 namespace cmap {
 namespace {
@@ -214,7 +215,7 @@ TEST(Umeyama, RefusesWrongArguments) {
 TEST(Umeyama, TheSameForAnyNumberOfThreads) {
   const Points p = random_points(50000, 18), q = moved(p, {}, 0.1);
   const Similarity all = umeyama(p, q);
-  const ThreadLimit one(1);
+  const ExecutionScope one({.threads = 1});
   EXPECT_EQ(umeyama(p, q).matrix(), all.matrix());
 }
 

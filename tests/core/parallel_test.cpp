@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "cmap/core/error.hpp"
+#include "cmap/core/execution.hpp"
 
 namespace cmap {
 namespace {
@@ -31,26 +32,8 @@ std::vector<Chunk> chunks_of(std::size_t n, std::size_t chunk_size) {
   return chunks;
 }
 
-TEST(ThreadLimit, HoldsForAsLongAsItLives) {
-  const int all = thread_count();
-  ASSERT_GE(all, 1);
-  {
-    const ThreadLimit limit(1);
-    EXPECT_EQ(thread_count(), 1);
-  }
-  EXPECT_EQ(thread_count(), all);
-  {
-    const ThreadLimit limit(2);
-    EXPECT_EQ(thread_count(), std::min(2, all));
-  }
-  {
-    const ThreadLimit limit(0);
-    EXPECT_EQ(thread_count(), all);
-  }
-}
-
-TEST(ThreadLimit, OfOneKeepsEverythingOnTheCaller) {
-  const ThreadLimit limit(1);
+TEST(ExecutionScope, OfOneKeepsEverythingOnTheCaller) {
+  const ExecutionScope limit({.threads = 1});
   const std::thread::id caller = std::this_thread::get_id();
   std::atomic<int> elsewhere = 0;
   std::atomic<int> calls = 0;
@@ -67,7 +50,7 @@ TEST(ThreadLimit, OfOneKeepsEverythingOnTheCaller) {
 
 TEST(ParallelChunks, CoverEveryIndexExactlyOnce) {
   for (int threads : kThreads) {
-    const ThreadLimit limit(threads);
+    const ExecutionScope limit({.threads = threads});
     EXPECT_EQ(chunks_of(10, 4), (std::vector<Chunk>{{0, 4}, {4, 8}, {8, 10}}));
     EXPECT_EQ(chunks_of(8, 4), (std::vector<Chunk>{{0, 4}, {4, 8}}));
     EXPECT_EQ(chunks_of(3, 4), (std::vector<Chunk>{{0, 3}}));
@@ -82,7 +65,7 @@ TEST(ParallelChunks, CoverEveryIndexExactlyOnce) {
 
 TEST(ParallelChunks, AnExceptionReachesTheCaller) {
   for (int threads : kThreads) {
-    const ThreadLimit limit(threads);
+    const ExecutionScope limit({.threads = threads});
     try {
       parallel_chunks(1000, 1, [](std::size_t begin, std::size_t) {
         if (begin == 613) throw InputError("point 613");
@@ -97,7 +80,7 @@ TEST(ParallelChunks, AnExceptionReachesTheCaller) {
 
 TEST(ParallelTasks, EveryTaskRunsOnce) {
   for (int threads : kThreads) {
-    const ThreadLimit limit(threads);
+    const ExecutionScope limit({.threads = threads});
     std::vector<int> runs(50, 0);
     std::vector<std::function<void()>> tasks;
     for (int& run : runs) tasks.emplace_back([&run] { ++run; });
@@ -109,7 +92,7 @@ TEST(ParallelTasks, EveryTaskRunsOnce) {
 
 TEST(ParallelTasks, AnExceptionReachesTheCaller) {
   for (int threads : kThreads) {
-    const ThreadLimit limit(threads);
+    const ExecutionScope limit({.threads = threads});
     EXPECT_THROW(parallel_tasks({[] {}, [] { throw UsageError("second task"); }, [] {}}), UsageError);
   }
 }
@@ -141,7 +124,7 @@ TEST(OrderedSum, IsBitwiseTheSameForAnyNumberOfThreads) {
     backward += chunk_sum(c * kChunk, std::min(kN, (c + 1) * kChunk));
   ASSERT_NE(forward, backward) << "these terms cannot tell one order from another";
   for (int threads : kThreads) {
-    const ThreadLimit limit(threads);
+    const ExecutionScope limit({.threads = threads});
     const double sum = ordered_sum<double>(kN, kChunk, [](std::size_t begin, std::size_t end) {
       // Chunks of uneven length finish out of order.
       if (begin / kChunk % 7 == 0) std::this_thread::sleep_for(std::chrono::microseconds(200));

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "cmap/core/parallel.hpp"
+#include "cmap/core/execution.hpp"
 #include "eval/eval_testing.hpp"
 
 namespace cmap {
@@ -195,7 +195,7 @@ TEST(Bootstrap, WhichMetricsAreAskedForChangesNoBlock) {
 TEST(Bootstrap, TheSameForAnyNumberOfThreads) {
   const auto intervals = [] { return intervals_json(*evaluated_with_blocks().intervals).dump(); };
   const std::string all = intervals();
-  const ThreadLimit one(1);
+  const ExecutionScope one({.threads = 1});
   EXPECT_EQ(intervals(), all);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "cmap/core/execution.hpp"
 #include "cmap/core/parallel.hpp"
 #include "eval/eval_testing.hpp"
 
@@ -99,12 +100,12 @@ TEST(Evaluation, EveryStageIsTimedAndReportedInOrder) {
   std::vector<std::string> stages;
   double last = 0.0;
   const Evaluation found = evaluate(kReference, kEstimate, EvaluationOptions{}, Eigen::Matrix4d::Identity(),
-                                    [&](std::string_view stage, double done) {
+                                    {.progress = [&](std::string_view stage, double done) {
                                       stages.emplace_back(stage);
                                       EXPECT_GE(done, last);
                                       EXPECT_LE(done, 1.0);
                                       last = done;
-                                    });
+                                    }});
   std::vector<std::string> timed;
   for (const auto& [stage, seconds] : found.stage_seconds) {
     timed.push_back(stage);
@@ -486,7 +487,7 @@ TEST(Evaluation, IsBitwiseTheSameForAnyNumberOfThreads) {
   const PointCloud reference = painted_sheet(kLoopChunk + 5000, 1), estimate = painted_sheet(kLoopChunk + 1000, 2);
   std::vector<std::string> found;
   for (int threads : {1, 2, 3, 8}) {
-    const ThreadLimit limit(threads);
+    const ExecutionScope limit({.threads = threads});
     found.push_back(everything(evaluate(reference, estimate, all_options())).dump());
   }
   for (const std::string& other : found) EXPECT_EQ(other, found.front());

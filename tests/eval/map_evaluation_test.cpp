@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "cmap/core/parallel.hpp"
+#include "cmap/core/execution.hpp"
 #include "eval/eval_testing.hpp"
 
 namespace cmap {
@@ -121,7 +121,7 @@ TEST(EvaluateMap, RefusesWhatCannotBeEvaluated) {
 TEST(EvaluateMap, TheSameForAnyNumberOfThreads) {
   const auto metrics = [] { return fields_of(evaluate_map(painted_sheet(100'000, 3), {}).metrics).dump(); };
   const std::string expected = metrics();
-  const ThreadLimit limit(1);
+  const ExecutionScope limit({.threads = 1});
   EXPECT_EQ(metrics(), expected);
 }
 

@@ -1,6 +1,6 @@
 #include "cmap/graph/pose_graph.hpp"
 
-#include "cmap/core/parallel.hpp"
+#include "cmap/core/execution.hpp"
 #include "graph/graph_testing.hpp"
 
 namespace cmap {
@@ -271,7 +271,7 @@ TEST(ScaledPoseGraph, WithScalesHeldItIsTheRigidGraph) {
 TEST(PoseGraph, TheSameForAnyNumberOfThreads) {
   const PoseGraph graph = noisy_graph(14);
   const PoseGraphResult all = optimize(graph, {GraphStart::kBoth});
-  const ThreadLimit one(1);
+  const ExecutionScope one({.threads = 1});
   const PoseGraphResult single = optimize(graph, {GraphStart::kBoth});
   EXPECT_EQ(all.final_cost, single.final_cost);
   EXPECT_EQ(largest_displacement(all.poses, single.poses), 0.0);

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "cmap/core/execution.hpp"
 #include "metrics/measured.hpp"
 
 namespace cmap {
@@ -90,7 +91,7 @@ TEST(AverageWasserstein, ScalesWithMapAndVoxel) {
 TEST(AverageWasserstein, SameBitsForAnyNumberOfThreads) {
   const test::Clouds clouds = test::two_sheets(60000, 50000);
   const double many = *average(clouds, 0.5).value;
-  const ThreadLimit limit(1);
+  const ExecutionScope limit({.threads = 1});
   EXPECT_EQ(*average(clouds, 0.5).value, many);
 }
 

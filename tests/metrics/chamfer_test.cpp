@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "cmap/core/execution.hpp"
 #include "metrics/measured.hpp"
 
 namespace cmap {
@@ -108,7 +109,7 @@ TEST(Chamfer, ScalesWithTheMaps) {
 TEST(Chamfer, SameBitsForAnyNumberOfThreads) {
   const MapPair pair = test::pair_with(test::random_squares(400000, 4));
   const Record many = measured(catalog::chamfer, pair);
-  const ThreadLimit limit(1);
+  const ExecutionScope limit({.threads = 1});
   expect_same_variants(measured(catalog::chamfer, pair), many, 0.0);
 }
 

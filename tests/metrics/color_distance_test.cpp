@@ -1,6 +1,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "cmap/core/execution.hpp"
 #include "metrics/measured.hpp"
 
 namespace cmap {
@@ -149,7 +150,7 @@ TEST(ColorDistance, SameBitsForAnyNumberOfThreadsAndOrderOfPoints) {
   const test::Clouds clouds = test::two_sheets(150000, 140000);
   const double many = value(clouds);
   EXPECT_EQ(value(test::permuted(clouds)), many);
-  const ThreadLimit limit(1);
+  const ExecutionScope limit({.threads = 1});
   EXPECT_EQ(value(clouds), many);
 }
 

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "cmap/core/execution.hpp"
 #include "metrics/measured.hpp"
 
 namespace cmap {
@@ -268,7 +269,7 @@ TEST(LocalColorRecall, IsInvariantUnderMotionPermutationTranslationAndScale) {
 TEST(LocalColorRecall, SameForAnyNumberOfThreads) {
   const MapPair pair = test::two_sheets(90000, 80000).pair();
   const Recall many = recall(pair, 0.02, 0.3);
-  const ThreadLimit limit(1);
+  const ExecutionScope limit({.threads = 1});
   EXPECT_EQ(recall(pair, 0.02, 0.3).classes, many.classes);
 }
 

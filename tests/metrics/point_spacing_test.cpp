@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "cmap/core/execution.hpp"
 #include "metrics/map_pairs.hpp"
 
 namespace cmap {
@@ -84,7 +85,7 @@ TEST(PointSpacing, EqualsTheDefinition) {
 TEST(PointSpacing, TheSameForAnyNumberOfThreads) {
   const Bvh map(sort_points(test::sheet_cloud(200'000, 4)));
   const PointSpacing all = point_spacing(map);
-  const ThreadLimit limit(1);
+  const ExecutionScope limit({.threads = 1});
   const PointSpacing one = point_spacing(map);
   EXPECT_EQ(one.mean_m, all.mean_m);
   EXPECT_EQ(one.median_m, all.median_m);

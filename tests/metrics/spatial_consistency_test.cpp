@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "cmap/core/execution.hpp"
 #include "metrics/measured.hpp"
 
 namespace cmap {
@@ -123,7 +124,7 @@ TEST(SpatialConsistency, DoesNotChangeWithScaleOrPlace) {
 TEST(SpatialConsistency, SameBitsForAnyNumberOfThreads) {
   const Voxels voxels = random_voxels(8, 4);
   const double many = *consistency_of(voxels, 3).value;
-  const ThreadLimit limit(1);
+  const ExecutionScope limit({.threads = 1});
   EXPECT_EQ(*consistency_of(voxels, 3).value, many);
 }
 

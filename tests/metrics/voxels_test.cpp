@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "cmap/core/execution.hpp"
 #include "metrics/map_pairs.hpp"
 
 namespace cmap {
@@ -94,7 +95,7 @@ TEST(CollectVoxels, InTheSameOrderForAnyNumberOfThreads) {
   const PointBlocks points = sorted_sheet();
   const VoxelFrame frame(box_of(points), 0.25);
   const auto many = count_points(points, frame, 1);
-  const ThreadLimit limit(1);
+  const ExecutionScope limit({.threads = 1});
   const auto one = count_points(points, frame, 1);
   ASSERT_EQ(one.size(), many.size());
   for (std::size_t i = 0; i < one.size(); ++i) EXPECT_EQ(one[i].key, many[i].key);

@@ -1,6 +1,6 @@
 #include "cmap/render/figure.hpp"
 
-#include "cmap/core/parallel.hpp"
+#include "cmap/core/execution.hpp"
 #include "eval/eval_testing.hpp"
 
 namespace cmap {
@@ -24,7 +24,7 @@ TEST(DrawFigure, IsTheSameForAnyNumberOfThreads) {
   const IndexedMap map(test::painted_sheet(50'000, 1));
   Array<Rgba8> pixels[2];
   for (int threads : {1, 2}) {
-    const ThreadLimit limit(threads);
+    const ExecutionScope limit({.threads = threads});
     pixels[threads - 1] = picture(map).pixels;
   }
   EXPECT_EQ(pixels[0], pixels[1]);

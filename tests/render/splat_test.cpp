@@ -1,6 +1,6 @@
 #include "cmap/render/splat.hpp"
 
-#include "cmap/core/parallel.hpp"
+#include "cmap/core/execution.hpp"
 #include "eval/eval_testing.hpp"
 
 namespace cmap {
@@ -89,7 +89,7 @@ TEST(Splat, IsTheSameForAnyNumberOfThreads) {
   const Projection projection(camera_for(View::kOblique, points, 1.0, false), 300, 300);
   Array<std::uint64_t> cells[2];
   for (int threads : {1, 2}) {
-    const ThreadLimit limit(threads);
+    const ExecutionScope limit({.threads = threads});
     cells[threads - 1] = splat(points, projection, {0.05, 1.0, 8.0}).cells;
   }
   EXPECT_EQ(cells[0], cells[1]);

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "cmap/core/parallel.hpp"
+#include "cmap/core/execution.hpp"
 #include "spatial/clouds.hpp"
 
 namespace cmap {
@@ -68,7 +68,7 @@ TEST(EvenlySpreadSlots, PointsOnOneSpotAndOnALine) {
 TEST(EvenlySpreadSlots, TheSameForAnyNumberOfThreads) {
   const PointBlocks points = sort_points(test::sheet_cloud(200'000, 6));
   const Array<std::uint32_t> all = evenly_spread_slots(points, 10'000);
-  const ThreadLimit one(1);
+  const ExecutionScope one({.threads = 1});
   EXPECT_EQ(evenly_spread_slots(points, 10'000), all);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cmap/core/execution.hpp"
 #include "sim/sim_testing.hpp"
 
 namespace cmap {
@@ -91,7 +92,7 @@ TEST(RenderView, SkyIsInfinitelyFarAndColored) {
 TEST(RenderView, IsTheSameForAnyNumberOfThreads) {
   const auto view = [] { return render_view(town(), distorted(), looking({-60, -30, 1.6}, {1, 0.2, 0})); };
   const CameraView many = view();
-  const ThreadLimit one(1);
+  const ExecutionScope one({.threads = 1});
   const CameraView single = view();
   EXPECT_TRUE(many.image.pixels == single.image.pixels);
   EXPECT_TRUE(many.depth_m == single.depth_m);

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cmap/core/error.hpp"
-#include "cmap/core/parallel.hpp"
+#include "cmap/core/execution.hpp"
 #include "cmap/io/capture.hpp"
 #include "cmap/io/image_file.hpp"
 #include "cmap/io/lidar_scan_file.hpp"
@@ -200,7 +200,7 @@ TEST(SimulateCapture, SameBytesForAnyNumberOfThreads) {
   options.camera.exposure_noise = 0.1;
   options.predictions.world_points = true;
   const auto run = [&](const char* name, int threads, int seed) {
-    const ThreadLimit limit(threads);
+    const ExecutionScope limit({.threads = threads});
     options.seed = seed;
     simulate_capture(options, folder / name);
     return files_of(folder / name);
@@ -255,7 +255,7 @@ TEST(SimulateCapture, LeavesNothingBehindWhereItCannotBe) {
   refused([](CaptureOptions& o) { o.route.begin_m = 1e6; });
   refused([](CaptureOptions& o) { o.scene.town.blocks_x = 0; });
   fs::create_directory(folder / "capture");
-  EXPECT_THROW(simulate_capture(tiny(false), folder / "capture"), UsageError) << "the folder exists";
+  EXPECT_THROW(simulate_capture(tiny(false), folder / "capture"), OutputError) << "the folder exists";
 }
 
 TEST(MakeRoute, CutsWaysOfTheScene) {

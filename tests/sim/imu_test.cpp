@@ -1,7 +1,7 @@
 #include "cmap/sim/imu.hpp"
 
 #include "cmap/core/error.hpp"
-#include "cmap/core/parallel.hpp"
+#include "cmap/core/execution.hpp"
 #include "sim/sensor_testing.hpp"
 
 namespace cmap {
@@ -162,7 +162,7 @@ TEST(Imu, StartsWithABiasThatDependsOnTheSeed) {
 TEST(Imu, SameForAnyNumberOfThreads) {
   const PoseSpline path = walk();
   const auto run = [&](int threads) {
-    const ThreadLimit limit(threads);
+    const ExecutionScope limit({.threads = threads});
     return simulate_imu(path, ImuOptions{}, 5);
   };
   const auto one = run(1), four = run(4);

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "cmap/core/error.hpp"
-#include "cmap/core/parallel.hpp"
+#include "cmap/core/execution.hpp"
 #include "sim/sensor_testing.hpp"
 
 namespace cmap {
@@ -221,7 +221,7 @@ TEST(SimulateScan, SameForAnyNumberOfThreadsOtherForAnotherSeedOrScan) {
   const PoseSpline path = walk();
   const LidarOptions o = lidar_model("mid360");
   const auto run = [&](int threads, double start_s, std::uint64_t seed) {
-    const ThreadLimit limit(threads);
+    const ExecutionScope limit({.threads = threads});
     return simulate_scan(scene, path, kT_imu_lidar, o, start_s, seed);
   };
   const LidarScan one = run(1, 4.0, 9), four = run(4, 4.0, 9);

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "cmap/core/error.hpp"
-#include "cmap/core/parallel.hpp"
+#include "cmap/core/execution.hpp"
 #include "sim/sim_testing.hpp"
 
 namespace cmap {
@@ -110,7 +110,7 @@ TEST(NetworkImage, IsBlackWhereThePictureEndsAndSaysWhatDoesNotFit) {
 TEST(NetworkImage, IsTheSameForAnyNumberOfThreads) {
   const CameraModel own = pinhole(640, 480, 400.0), network = network_camera(own, 518);
   const RgbImage both = network_image(ramp(640, 480), own, network).image;
-  const ThreadLimit one(1);
+  const ExecutionScope one({.threads = 1});
   EXPECT_EQ(network_image(ramp(640, 480), own, network).image.pixels, both.pixels);
 }
 

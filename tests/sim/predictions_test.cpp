@@ -5,7 +5,7 @@
 #include <set>
 
 #include "cmap/core/error.hpp"
-#include "cmap/core/parallel.hpp"
+#include "cmap/core/execution.hpp"
 #include "cmap/sim/network_input.hpp"
 #include "sim/sensor_testing.hpp"
 #include "sim/sim_testing.hpp"
@@ -326,7 +326,7 @@ TEST(SimulateSession, PosesDriftAsRealOnesDo) {
 TEST(SimulateSession, SharedFramesGetOtherErrorsAndThreadsNone) {
   const Drive d = drive(testing::room(), 3);
   const auto run = [&](int threads, std::size_t session) {
-    const ThreadLimit limit(threads);
+    const ExecutionScope limit({.threads = threads});
     return simulate_session(d.all(), d.network, session, {}, 1);
   };
   const SimulatedSession one = run(1, 0), four = run(4, 0), other = run(1, 1);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "cmap/core/execution.hpp"
 #include "sim/sim_testing.hpp"
 
 namespace cmap {
@@ -134,7 +135,7 @@ TEST_P(EveryScene, IsTheSameForTheSameSeed) {
   const PointCloud a = sample_surface(scene, 0.3, 7), other_seed = sample_surface(scene, 0.3, 8);
   PointCloud b;
   {
-    const ThreadLimit one(1);
+    const ExecutionScope one({.threads = 1});
     b = sample_surface(scene, 0.3, 7);
   }
   ASSERT_EQ(a.size(), b.size());

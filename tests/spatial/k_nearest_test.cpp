@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "cmap/core/parallel.hpp"
+#include "cmap/core/execution.hpp"
 #include "cmap/spatial/nearest.hpp"
 #include "simd/kernels.hpp"
 #include "spatial/clouds.hpp"
@@ -73,7 +73,7 @@ TEST(KNearest, TheSameForEveryInstructionSetAndNumberOfThreads) {
     kernels_for(level).k_nearest(index, queries, 20, 0, index.points.blocks.size(), found.data());
     EXPECT_EQ(found, all_threads) << simd_level_name(level);
   }
-  const ThreadLimit one(1);
+  const ExecutionScope one({.threads = 1});
   EXPECT_EQ(find_k_nearest(index, index.points, 20), all_threads);
 }
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "cmap/core/parallel.hpp"
+#include "cmap/core/execution.hpp"
 #include "cmap/spatial/radix_sort.hpp"
 #include "spatial/clouds.hpp"
 
@@ -66,7 +66,7 @@ TEST(SortPoints, SameForAnyNumberOfThreads) {
   const PointCloud cloud = test::sheet_cloud(300000, 6);
   PointBlocks one;
   {
-    const ThreadLimit limit(1);
+    const ExecutionScope limit({.threads = 1});
     one = sort_points(cloud);
   }
   EXPECT_EQ(sort_points(cloud).original_index, one.original_index);

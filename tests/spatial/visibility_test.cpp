@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cmap/core/error.hpp"
-#include "cmap/core/parallel.hpp"
+#include "cmap/core/execution.hpp"
 
 namespace cmap {
 namespace {
@@ -102,7 +102,7 @@ TEST(Visibility, PositionsAreThinnedAndOrderOfThreadsDoesNotMatter) {
   for (int i = 0; i < 100; ++i) path.push_back({-15 + 0.1 * i, 2, 1.5});
   const VisibleSurfaces many(index, path, {});
   EXPECT_EQ(many.n_positions(), 20u) << "10 m of path, one position for each half meter";
-  const ThreadLimit one(1);
+  const ExecutionScope one({.threads = 1});
   const VisibleSurfaces alone(index, path, {});
   for (std::size_t slot = 0; slot < index.points.size; ++slot) {
     ASSERT_EQ(many.contains(index.points.world(slot)), alone.contains(index.points.world(slot)));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cmap/align/alignment.hpp"
+#include "cmap/core/execution.hpp"
 #include "cmap/geometry/point_cloud.hpp"
 
 namespace cmap {
@@ -50,7 +51,7 @@ const RegistrationMethod& registration_method(std::string_view name);
 /// T_initial no similarity) and for `global` in a build without PCL, UsageError for wrong options,
 /// std::invalid_argument on an empty cloud.
 Alignment align(const PointCloud& source, const PointCloud& target, const RegistrationMethod& method,
-                const AlignOptions& options = {});
+                const AlignOptions& options = {}, const Execution& execution = {});
 
 /// The voxel that align() takes where none is given.
 double default_align_voxel_m(const PointCloud& target);

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "cmap/align/alignment.hpp"
+#include "cmap/core/execution.hpp"
 #include "cmap/geometry/point_cloud.hpp"
 
 namespace cmap {
@@ -32,6 +33,7 @@ struct TanksAndTemplesResult {
 /// scores agree to the extent that they do not depend on that. Deterministic, thread-safe. Throws UsageError unless tau
 /// > 0, UnsupportedError where a stage has nothing to match, std::invalid_argument on empty clouds.
 TanksAndTemplesResult tanks_and_temples(const PointCloud& source, const PointCloud& target,
-                                        const Eigen::Matrix4d& T_initial, const TanksAndTemplesOptions& options);
+                                        const Eigen::Matrix4d& T_initial, const TanksAndTemplesOptions& options,
+                                        const Execution& execution = {});
 
 }  // namespace cmap

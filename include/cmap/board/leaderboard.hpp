@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "cmap/core/progress.hpp"
+#include "cmap/core/execution.hpp"
 #include "cmap/eval/options.hpp"
 
 namespace cmap {
@@ -81,15 +81,15 @@ struct LeaderboardPair {
 struct LeaderboardRun {
   std::filesystem::path data_root, output;
   std::function<void(const std::string&)> log;  ///< one line for each pair and each surprise
-  ProgressSink progress;                        ///< of the pair at hand
+  Execution execution;                          ///< its sink gets the stages of the pair at hand
 };
 
 /// Evaluates every pair that the output folder does not hold yet: pairs/SEQUENCE/METHOD/ gets report.json, report.html,
 /// figure.png (where figures are built) and, last, pair.json: the content of the inputs, parameters and version that
 /// the others belong to, and their checksums. What does not match is evaluated again. Each pair has
 /// a process of its own: one that cannot be evaluated, or dies, has failed and the others go on. Killed at any moment
-/// and started again, it leaves the same bytes. Throws UsageError where something cannot be written, another run is
-/// writing there, or an input is below the output; InputError where the data root is no folder.
+/// and started again, it leaves the same bytes. Throws OutputError where something cannot be written or another run is
+/// writing there, UsageError where an input is below the output, InputError where the data root is no folder.
 std::vector<LeaderboardPair> evaluate_leaderboard(const LeaderboardManifest& manifest, const LeaderboardRun& run);
 
 /// All tables, the same for the same pairs.

@@ -6,20 +6,11 @@
 
 namespace cmap {
 
-/// Limits the threads of all parallel loops for as long as it lives; 0 means all the machine has. Not nestable.
-class ThreadLimit {
- public:
-  explicit ThreadLimit(int threads);
-  ~ThreadLimit();
-  ThreadLimit(const ThreadLimit&) = delete;
-  ThreadLimit& operator=(const ThreadLimit&) = delete;
-};
-
-/// Threads that parallel loops use now.
+/// Threads that parallel loops use now; cmap/core/execution.hpp says how many.
 int thread_count();
 
 /// Calls body(begin, end) for consecutive chunks of [0, n) in parallel. The chunks depend on `chunk_size` alone, never
-/// on the number of threads; exceptions of the body reach the caller.
+/// on the number of threads; exceptions of the body reach the caller, as does Interrupted (cmap/core/execution.hpp).
 void parallel_chunks(std::size_t n, std::size_t chunk_size,
                      const std::function<void(std::size_t begin, std::size_t end)>& body);
 

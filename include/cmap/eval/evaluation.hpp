@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cmap/align/alignment.hpp"
-#include "cmap/core/progress.hpp"
+#include "cmap/core/execution.hpp"
 #include "cmap/core/warning.hpp"
 #include "cmap/eval/bootstrap.hpp"
 #include "cmap/eval/metric_catalog.hpp"
@@ -72,9 +72,10 @@ struct Evaluation {
 /// Throws UnsupportedError where color is required and missing, or the crop leaves nothing; UsageError for voxels too
 /// small for the map, or where observed = sensor and no position of it is given (reference frame). The clouds are
 /// consumed, as their memory is needed.
+/// Several threads may evaluate at a time, each as its `execution` says; throws Interrupted where that stops it.
 /// Bitwise the same for any number of threads and every instruction set.
 Evaluation evaluate(PointCloud reference, PointCloud estimate, const EvaluationOptions& options,
-                    const Eigen::Matrix4d& T_ref_est = Eigen::Matrix4d::Identity(), const ProgressSink& progress = {},
+                    const Eigen::Matrix4d& T_ref_est = Eigen::Matrix4d::Identity(), const Execution& execution = {},
                     std::span<const Eigen::Vector3d> sensor_positions = {});
 
 }  // namespace cmap

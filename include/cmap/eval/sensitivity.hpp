@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "cmap/core/progress.hpp"
+#include "cmap/core/execution.hpp"
 #include "cmap/eval/options.hpp"
 #include "cmap/geometry/point_cloud.hpp"
 
@@ -47,6 +47,6 @@ class SensitivityBand {
 /// options.sensitivity_rotation_deg. Throws as evaluate does.
 SensitivityBand sensitivity_band(const PointCloud& reference, const PointCloud& estimate,
                                  const EvaluationOptions& options, const Eigen::Matrix4d& T_ref_est,
-                                 const ProgressSink& progress = {});
+                                 const Execution& execution = {});
 
 }  // namespace cmap

@@ -21,6 +21,6 @@ struct CaptureCheck {
 /// options up to this stage does not need may be missing; those that are there are read all the same, and what is wrong
 /// with them is a warning. Writes nothing.
 CaptureCheck check_capture(const std::filesystem::path& folder, const ReconstructionOptions& options, Stage last,
-                           const ProgressSink& progress = {});
+                           const Execution& execution = {});
 
 }  // namespace cmap

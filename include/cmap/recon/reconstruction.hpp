@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "cmap/core/progress.hpp"
+#include "cmap/core/execution.hpp"
 #include "cmap/core/warning.hpp"
 #include "cmap/geometry/point_cloud.hpp"
 #include "cmap/io/capture.hpp"
@@ -69,7 +69,7 @@ struct ReconstructionRun {
   std::optional<std::size_t> only_session;
   std::filesystem::path stages;  ///< folder of what earlier runs found and this one finds; empty: none
   bool resume = false;           ///< take from there what was found from the same inputs and options
-  ProgressSink progress;
+  Execution execution = {};
   /// Gets each session's own map, fused as the whole is, as soon as it is there; empty: nobody wants them.
   std::function<void(const std::string& session, const PointCloud& map)> session_map;
 };

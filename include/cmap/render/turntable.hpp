@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "cmap/core/progress.hpp"
+#include "cmap/core/execution.hpp"
 #include "cmap/render/camera.hpp"
 #include "cmap/render/figure.hpp"
 
@@ -20,8 +20,9 @@ inline constexpr int kTurntableFramesPerSecond = 24;
 void check_turntable_name(const std::filesystem::path& name);
 
 /// Draws a figure from every camera and writes the video or the folder; it appears when it is complete. The same bytes
-/// for any number of threads. Throws UsageError where it cannot be written or ffmpeg is missing or fails.
+/// for any number of threads. Throws OutputError where it cannot be written or ffmpeg
+/// fails, UsageError where that is missing.
 void write_turntable(std::span<const Layer> layers, std::span<const Camera> cameras, const FigureOptions& options,
-                     const std::filesystem::path& name, const ProgressSink& progress = {});
+                     const std::filesystem::path& name, const Execution& execution = {});
 
 }  // namespace cmap

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "cmap/core/progress.hpp"
+#include "cmap/core/execution.hpp"
 #include "cmap/sim/capture_options.hpp"
 
 namespace cmap {
@@ -18,8 +18,8 @@ Route make_route(const Scene& scene, const RouteChoice& choice);
 /// unit of each session, and poses stretched by more than 1), options.json (all of `options`) and preview.png (from
 /// above with the way, a picture, its depth, a scan).
 /// The folder appears when all is done; the same bytes for the same options at any number of threads. Throws UsageError
-/// for options that are out of range or do not fit together, and where the folder cannot be written.
+/// for options that are out of range or do not fit together, OutputError where the folder cannot be written.
 void simulate_capture(const CaptureOptions& options, const std::filesystem::path& folder,
-                      const ProgressSink& progress = {});
+                      const Execution& execution = {});
 
 }  // namespace cmap

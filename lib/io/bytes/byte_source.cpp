@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "cmap/core/execution.hpp"
 #include "cmap/io/file_place.hpp"
 
 namespace cmap {
@@ -92,6 +93,7 @@ std::size_t ByteSource::read_at(std::uint64_t offset, std::span<std::byte> out) 
     std::memcpy(out.data(), memory_.data() + offset, out.size());
     return out.size();
   }
+  throw_if_stopped();
   std::size_t filled = 0;
   while (filled < out.size()) {
     const ssize_t got = ::pread(file_, out.data() + filled, out.size() - filled, static_cast<off_t>(offset + filled));
@@ -134,6 +136,7 @@ std::size_t ByteSource::read_some(std::span<std::byte> out, std::uint64_t offset
     std::memcpy(out.data(), memory_.data() + offset, n);
     return n;
   }
+  throw_if_stopped();
   for (;;) {
     const ssize_t got = ::read(file_, out.data(), out.size());
     if (got >= 0) return static_cast<std::size_t>(got);

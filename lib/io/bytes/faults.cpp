@@ -12,6 +12,8 @@ bool Faults::attempt(const std::function<void()>& read) const {
   try {
     read();
     return true;
+  } catch (const Interrupted&) {
+    throw;
   } catch (const Error& error) {
     list_->push_back(error.what());
     return false;

@@ -13,6 +13,7 @@
 #include "capture/capture_descriptions.hpp"
 #include "capture/capture_preview.hpp"
 #include "cmap/core/error.hpp"
+#include "cmap/core/execution.hpp"
 #include "cmap/core/parallel.hpp"
 #include "cmap/io/capture.hpp"
 #include "cmap/io/image_file.hpp"
@@ -73,10 +74,9 @@ void write_text(const fs::path& path, const std::string& text) {
 /// One capture while it is being made, a step per member function.
 class CaptureRun {
  public:
-  CaptureRun(const CaptureOptions& options, const fs::path& folder, const ProgressSink& progress)
+  CaptureRun(const CaptureOptions& options, const fs::path& folder)
       : o_(options),
         seed_(static_cast<std::uint64_t>(options.seed)),
-        progress_(progress),
         writer_(folder, stated_calibration(options)),
         truth_(writer_.subfolder("truth")),
         scene_(make_scene(options.scene)),
@@ -90,11 +90,11 @@ class CaptureRun {
   }
 
   void make() {
-    report("imu", 0.02);
+    report_progress("imu", 0.02);
     write_motion();
     write_scans();
     write_images();
-    report("map", 0.9);
+    report_progress("map", 0.9);
     write_map();
     write_text(truth_ / "options.json", to_json(o_).dump(1) + "\n");
     write_preview();
@@ -102,15 +102,11 @@ class CaptureRun {
   }
 
  private:
-  void report(std::string_view stage, double done) const {
-    if (progress_) progress_(stage, done);
-  }
-
   /// Calls work(i) for every i, reporting from `from` to `to`.
   template <class Work>
   void for_each(std::string_view stage, std::size_t n, double from, double to, Work&& work) const {
     for (std::size_t i = 0; i < n; ++i) {
-      report(stage, from + (to - from) * static_cast<double>(i) / static_cast<double>(n));
+      report_progress(stage, from + (to - from) * static_cast<double>(i) / static_cast<double>(n));
       work(i);
     }
   }
@@ -234,7 +230,6 @@ class CaptureRun {
 
   const CaptureOptions& o_;
   std::uint64_t seed_;
-  const ProgressSink& progress_;
   CaptureWriter writer_;
   fs::path truth_;
   Scene scene_;
@@ -250,10 +245,11 @@ class CaptureRun {
 
 }  // namespace
 
-void simulate_capture(const CaptureOptions& options, const fs::path& folder, const ProgressSink& progress) {
+void simulate_capture(const CaptureOptions& options, const fs::path& folder, const Execution& execution) {
+  const ExecutionScope scope(execution);
   check_options(options);
-  if (progress) progress("scene", 0.0);
-  CaptureRun(options, folder, progress).make();
+  report_progress("scene", 0.0);
+  CaptureRun(options, folder).make();
 }
 
 }  // namespace cmap
