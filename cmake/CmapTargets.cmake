@@ -34,6 +34,19 @@ function(cmap_add_module name)
   set_property(GLOBAL APPEND PROPERTY CMAP_MODULES ${name})
 endfunction()
 
+# cmap_add_loaded_module(name SOURCES a.cpp ... LIBRARIES lib ...) makes a shared library that programs load when it is asked for
+# (cmap/core/loaded_module.hpp); only its entry point is visible.
+function(cmap_add_loaded_module name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
+  add_library(${name} MODULE ${ARG_SOURCES})
+  cmap_set_compile_options(${name})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/lib)
+  target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES})
+  set(symbols ${PROJECT_SOURCE_DIR}/cmake/loaded_module.map)
+  target_link_options(${name} PRIVATE -Wl,--version-script=${symbols})
+  set_property(TARGET ${name} APPEND PROPERTY LINK_DEPENDS ${symbols})
+endfunction()
+
 # cmap_list_objects(PREFIX type namespace name ...) sets <PREFIX>_DECLARATIONS and <PREFIX>_POINTERS, the text of C++ that
 # declares objects of one type in namespace cmap::<namespace> and lists their addresses. A list in CMake decides what there is:
 # objects of a static library that registered themselves would be left out by the linker.

@@ -6,19 +6,10 @@
 
 #include "cmap/core/loaded_module.hpp"
 #include "cmap/core/parallel.hpp"
+#include "fpfh_module.hpp"
 
 namespace cmap {
 namespace {
-
-using FpfhFunction = void (*)(const float* xyz, const float* normals, std::size_t n, double radius_m, int threads,
-                              float* histograms);
-
-FpfhFunction load_fpfh() {
-  FpfhFunction function = nullptr;
-  LoadedModule("libcmap_fpfh.so", "this build has no global registration (apt-get install libpcl-dev, build again)")
-      .find("cmap_fpfh", function);
-  return function;
-}
 
 struct Nearest {
   std::uint32_t index = std::numeric_limits<std::uint32_t>::max();
@@ -56,10 +47,11 @@ Array<Nearest> nearest_features(const Array<Fpfh>& queries, const Array<Fpfh>& d
 
 Array<Fpfh> fpfh_features(std::span<const Eigen::Vector3f> points, std::span<const Eigen::Vector3f> normals,
                           double radius_m) {
-  static const FpfhFunction function = load_fpfh();
+  static const FpfhTable& pcl = load_module<FpfhTable>(
+      "libcmap_fpfh.so", "this build has no global registration (apt-get install libpcl-dev, build again)");
   Array<Fpfh> features(points.size());
-  function(points.data()->data(), normals.data()->data(), points.size(), radius_m, thread_count(),
-           features.data()->data());
+  pcl.features(points.data()->data(), normals.data()->data(), points.size(), radius_m, thread_count(),
+               features.data()->data());
   return features;
 }
 

@@ -1,13 +1,18 @@
-// What global registration loads when it is asked for: PCL's FPFH features. See align/features.hpp.
+// What global registration loads when it is asked for: PCL's FPFH features.
+
+#include "fpfh_module.hpp"
 
 #include <pcl/features/fpfh_omp.h>
 #include <pcl/point_types.h>
 #include <pcl/search/kdtree.h>
 
-extern "C" {
+#include "cmap/core/loaded_module.hpp"
 
-/// xyz and normals: 3 floats a point; histograms: 33 floats a point.
-void cmap_fpfh(const float* xyz, const float* normals, std::size_t n, double radius_m, int threads, float* histograms) {
+namespace cmap {
+namespace {
+
+void features_of(const float* xyz, const float* normals, std::size_t n, double radius_m, int threads,
+                 float* histograms) {
   const pcl::PointCloud<pcl::PointNormal>::Ptr cloud(new pcl::PointCloud<pcl::PointNormal>);
   cloud->resize(n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -25,4 +30,12 @@ void cmap_fpfh(const float* xyz, const float* normals, std::size_t n, double rad
   estimation.compute(features);
   for (std::size_t i = 0; i < n; ++i) std::copy_n(features[i].histogram, 33, histograms + 33 * i);
 }
+
+constexpr FpfhTable kTable{.features = features_of};
+
+}  // namespace
+}  // namespace cmap
+
+cmap::ModuleAnswer cmap_module(const char* build, const cmap::ModuleHost* host) {
+  return cmap::answer_of_module(cmap::kTable, build, host);
 }

@@ -4,13 +4,17 @@
 
 #include <array>
 #include <cstdlib>
+#include <optional>
 
 #include "cmap/core/error.hpp"
+#include "host_settings.hpp"
 
 namespace cmap {
 namespace {
 
 constexpr std::array<std::string_view, 4> kNames{"plain", "sse2", "avx2", "avx512"};
+
+std::optional<SimdLevel> level_of_host;
 
 SimdLevel best_level() {
 #if defined(__x86_64__)
@@ -39,8 +43,11 @@ SimdLevel parse_simd_level(std::string_view requested) {
   throw UsageError(fmt::format("CMAP_SIMD={}: expected plain, sse2, avx2 or avx512", requested));
 }
 
+void take_simd_level(SimdLevel level) { level_of_host = level; }
+
 SimdLevel simd_level() {
   static const SimdLevel level = [] {
+    if (level_of_host) return *level_of_host;
     const char* requested = std::getenv("CMAP_SIMD");
     return parse_simd_level(requested == nullptr ? "" : requested);
   }();

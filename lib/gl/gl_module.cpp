@@ -1,21 +1,26 @@
-// What cmap_render loads for OpenGL; see cmap/render/gl_module.hpp.
+// What cmap_render loads for OpenGL.
 
+#include "cmap/render/gl_module.hpp"
+
+#include "cmap/core/loaded_module.hpp"
 #include "cmap/gl/splat_gl.hpp"
 #include "cmap/gl/viewer.hpp"
 
-extern "C" {
+namespace cmap {
+namespace {
 
-void cmap_gl_open_splatter(std::function<void(const cmap::PointBlocks&, const cmap::Projection&,
-                                              const cmap::SplatOptions&, cmap::PixelMap&)>& splat_into,
-                           std::string& device) {
-  const auto splatter = std::make_shared<cmap::GlSplatter>();
+void open_splatter(GlTable::SplatInto& splat_into, std::string& device) {
+  const auto splatter = std::make_shared<GlSplatter>();
   device = splatter->device();
-  splat_into = [splatter](const cmap::PointBlocks& points, const cmap::Projection& projection,
-                          const cmap::SplatOptions& options,
-                          cmap::PixelMap& pixels) { splatter->splat(points, projection, options, pixels); };
+  splat_into = [splatter](const PointBlocks& points, const Projection& projection, const SplatOptions& options,
+                          PixelMap& pixels) { splatter->splat(points, projection, options, pixels); };
 }
 
-void cmap_gl_require_display() { cmap::require_display(); }
+constexpr GlTable kTable{.open_splatter = open_splatter, .require_display = require_display, .view = view};
 
-void cmap_gl_view(const cmap::ViewerScene& scene) { cmap::view(scene); }
+}  // namespace
+}  // namespace cmap
+
+cmap::ModuleAnswer cmap_module(const char* build, const cmap::ModuleHost* host) {
+  return cmap::answer_of_module(cmap::kTable, build, host);
 }

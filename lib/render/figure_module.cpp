@@ -1,20 +1,26 @@
-// What cmap_eval loads when a figure is asked for; see cmap/report/figure_module.hpp.
+// What cmap_eval loads when a figure is asked for.
 
+#include "cmap/report/figure_module.hpp"
+
+#include "cmap/core/loaded_module.hpp"
 #include "cmap/render/drawing_image.hpp"
 #include "cmap/render/image.hpp"
 #include "cmap/render/standard_figure.hpp"
 
-extern "C" {
+namespace cmap {
+namespace {
 
-void cmap_figure_check_name(const std::filesystem::path& name) { cmap::check_image_name(name); }
-
-void cmap_figure_write(const cmap::Evaluation& evaluation, const std::filesystem::path& name, cmap::OutputFile& file) {
-  cmap::write_standard_figure(evaluation, name, file);
-}
-
-void cmap_figure_write_drawing(const cmap::Drawing& drawing, const std::filesystem::path& name,
-                               cmap::OutputFile& file) {
+void write_drawing(const Drawing& drawing, const std::filesystem::path& name, OutputFile& file) {
   constexpr double kPixelsOfUnit = 2.0;
-  cmap::write_image(cmap::image_of(drawing, kPixelsOfUnit), name, file);
+  write_image(image_of(drawing, kPixelsOfUnit), name, file);
 }
+
+constexpr FigureTable kTable{
+    .check_name = check_image_name, .write = write_standard_figure, .write_drawing = write_drawing};
+
+}  // namespace
+}  // namespace cmap
+
+cmap::ModuleAnswer cmap_module(const char* build, const cmap::ModuleHost* host) {
+  return cmap::answer_of_module(cmap::kTable, build, host);
 }

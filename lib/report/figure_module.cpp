@@ -4,12 +4,8 @@
 
 namespace cmap {
 
-FigureModule::FigureModule() {
-  const LoadedModule module("libcmap_figure.so",
-                            "this build has no figures (tools/install_dependencies.sh --all, build again)");
-  module.find("cmap_figure_check_name", check_name_);
-  module.find("cmap_figure_write", write_);
-  module.find("cmap_figure_write_drawing", write_drawing_);
-}
+FigureModule::FigureModule()
+    : table_(load_module<FigureTable>(
+          "libcmap_figure.so", "this build has no figures (tools/install_dependencies.sh --all, build again)")) {}
 
 }  // namespace cmap

@@ -15,6 +15,17 @@ struct ViewerScene {
   std::function<std::vector<std::string>(const PointBlocks& points, std::size_t slot)> describe_point;
 };
 
+/// What module gl gives those that load it.
+struct GlTable {
+  static constexpr const char* kModule = "gl";
+  static constexpr int kTable = 1;
+  /// Draws into cells that the program has allocated, as the module's memory is its own.
+  using SplatInto = std::function<void(const PointBlocks&, const Projection&, const SplatOptions&, PixelMap&)>;
+  void (*open_splatter)(SplatInto& splat_into, std::string& device);
+  void (*require_display)();
+  void (*view)(const ViewerScene& scene);
+};
+
 /// The module gl, loaded when it is asked for: programs that may draw by OpenGL start without it.
 class GlModule {
  public:
@@ -26,16 +37,13 @@ class GlModule {
   Splatter open_splatter(std::string& device) const;
 
   /// Throws UsageError where view() would.
-  void require_display() const { require_display_(); }
+  void require_display() const { table_.require_display(); }
 
   /// Shows the scene in a window until the user closes it; see cmap/gl/viewer.hpp.
-  void view(const ViewerScene& scene) const { view_(scene); }
+  void view(const ViewerScene& scene) const { table_.view(scene); }
 
  private:
-  using SplatInto = std::function<void(const PointBlocks&, const Projection&, const SplatOptions&, PixelMap&)>;
-  void (*open_splatter_)(SplatInto&, std::string&);
-  void (*require_display_)();
-  void (*view_)(const ViewerScene&);
+  const GlTable& table_;
 };
 
 }  // namespace cmap

@@ -8,6 +8,15 @@
 
 namespace cmap {
 
+/// What module render gives those that load it.
+struct FigureTable {
+  static constexpr const char* kModule = "figure";
+  static constexpr int kTable = 1;
+  void (*check_name)(const std::filesystem::path& name);
+  void (*write)(const Evaluation& evaluation, const std::filesystem::path& name, OutputFile& file);
+  void (*write_drawing)(const Drawing& drawing, const std::filesystem::path& name, OutputFile& file);
+};
+
 /// The module render, loaded when a figure is asked for: programs that may draw start without VTK.
 class FigureModule {
  public:
@@ -15,22 +24,20 @@ class FigureModule {
   FigureModule();
 
   /// Throws UsageError for a name that is no picture's.
-  void check_name(const std::filesystem::path& name) const { check_name_(name); }
+  void check_name(const std::filesystem::path& name) const { table_.check_name(name); }
 
   /// write_standard_figure of module render.
   void write(const Evaluation& evaluation, const std::filesystem::path& name, OutputFile& file) const {
-    write_(evaluation, name, file);
+    table_.write(evaluation, name, file);
   }
 
   /// The drawing as a picture of the name's format.
   void write(const Drawing& drawing, const std::filesystem::path& name, OutputFile& file) const {
-    write_drawing_(drawing, name, file);
+    table_.write_drawing(drawing, name, file);
   }
 
  private:
-  void (*check_name_)(const std::filesystem::path&);
-  void (*write_)(const Evaluation&, const std::filesystem::path&, OutputFile&);
-  void (*write_drawing_)(const Drawing&, const std::filesystem::path&, OutputFile&);
+  const FigureTable& table_;
 };
 
 }  // namespace cmap
