@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -47,10 +48,10 @@ inline CLI::Validator one_of(std::vector<std::string> words) {
   return {reason, ""};
 }
 
-/// To standard output; throws UsageError where that fails, as on a full disk. Whoever closes a pipe has read enough.
+/// To standard output; throws OutputError where that fails, as on a full disk. Whoever closes a pipe has read enough.
 inline void print(const std::string& text) {
   const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
-  if (!written && errno != EPIPE) throw UsageError(fmt::format("standard output: {}", std::strerror(errno)));
+  if (!written && errno != EPIPE) throw OutputError(fmt::format("standard output: {}", std::strerror(errno)));
 }
 
 /// Names the arguments that no option takes, in their order, and the options that are spelled nearly like them.
@@ -95,6 +96,8 @@ int run_program(CLI::App& app, int argc, char** argv, Run&& run) {
     return error.get_exit_code() == 0 ? app.exit(error) : usage(error.what());
   } catch (const Error& error) {
     return fail(error.exit_code(), error.what());
+  } catch (const std::filesystem::filesystem_error& error) {  // as of a folder that may not be looked into
+    return fail(ExitCode::kInput, error.what());
   } catch (const std::exception& error) {
     return fail(ExitCode::kInternal, fmt::format("internal error: {}", error.what()));
   }

@@ -182,7 +182,7 @@ void ViewerWindow::save() {
     write_image(model_.draw_plain(), name(), file);
     file.commit();
     model_.say(fmt::format("saved {}", name().string()));
-  } catch (const UsageError& error) {
+  } catch (const OutputError& error) {
     model_.say(error.what());
   }
 }

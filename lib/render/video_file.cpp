@@ -127,6 +127,6 @@ void VideoWriter::finish() {
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) fail();
 }
 
-void VideoWriter::fail() const { throw UsageError(fmt::format("{}: ffmpeg cannot write it", name_.string())); }
+void VideoWriter::fail() const { throw OutputError(fmt::format("{}: ffmpeg cannot write it", name_.string())); }
 
 }  // namespace cmap

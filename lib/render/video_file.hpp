@@ -27,7 +27,7 @@ class VideoWriter {
 
   void add(const Image& image);
 
-  /// Waits until the video is complete. Throws UsageError where ffmpeg failed; its own message is on stderr.
+  /// Waits until the video is complete. Throws OutputError where ffmpeg failed; its own message is on stderr.
   void finish();
 
  private:

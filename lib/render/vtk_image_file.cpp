@@ -61,7 +61,7 @@ void write_tiff(const Image& image, const std::filesystem::path& name, OutputFil
   writer->SetCompressionToPackBits();
   writer->SetFileName(file.path_for_writer().c_str());
   writer->Write();
-  if (writer->GetErrorCode() != 0) throw UsageError(fmt::format("{}: cannot be written as TIFF", name.string()));
+  if (writer->GetErrorCode() != 0) throw OutputError(fmt::format("{}: cannot be written as TIFF", name.string()));
 }
 
 }  // namespace

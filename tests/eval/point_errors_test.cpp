@@ -172,7 +172,7 @@ TEST(PointErrors, AnUnwritableFileIsNamed) {
   const Evaluation evaluation = evaluate(kReference, kEstimate, options_for({"chamfer"}));
   for (const char* path : {"/no/such/folder/errors.ply", "/dev/full"}) {
     for (Writer errors : {&write_estimate_errors, &write_reference_errors}) {
-      EXPECT_THAT(refusal_of<UsageError>([&] { write(errors, evaluation, path); }), HasSubstr(path));
+      EXPECT_THAT(refusal_of<OutputError>([&] { write(errors, evaluation, path); }), HasSubstr(path));
     }
   }
 }

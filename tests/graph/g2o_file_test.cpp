@@ -109,7 +109,7 @@ TEST(G2oFile, WritesNothingThatItCannotHold) {
   const std::vector<std::uint64_t> ids{1, 2};
   EXPECT_THROW(write_g2o(graph, folder / "a.g2o", ids), std::invalid_argument);
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
-  EXPECT_THROW(write_g2o(graph, folder / "no" / "a.g2o"), UsageError);
+  EXPECT_THROW(write_g2o(graph, folder / "no" / "a.g2o"), OutputError);
 }
 
 TEST(G2oFile, SaysWhatIsWrong) {

@@ -447,8 +447,8 @@ TEST(CaptureWriter, KilledItLeavesNoCapture) {
 TEST(CaptureWriter, RefusesWhatWouldNotReadBack) {
   const TempFolder folder;
   fs::create_directory(folder / "there");
-  EXPECT_THROW(CaptureWriter(folder / "there", calibration()), UsageError);
-  EXPECT_THROW(CaptureWriter(folder / "no/such/place", calibration()), UsageError);
+  EXPECT_THROW(CaptureWriter(folder / "there", calibration()), OutputError);
+  EXPECT_THROW(CaptureWriter(folder / "no/such/place", calibration()), OutputError);
   EXPECT_THROW(CaptureWriter(folder / "new", CaptureCalibration{}), UsageError) << "no camera";
   CaptureWriter writer(folder / "new", calibration());
   writer.add_scan(scan_at(2));

@@ -67,7 +67,7 @@ TEST(ImageFile, SaysWhatIsWrong) {
   folder.write("d.jpg", jpeg + "what some cameras append");
   EXPECT_EQ(read_image(folder / "d.jpg").pixels, read_image(folder / "b.jpg").pixels);
   EXPECT_THROW(write_image(gradient(40, 30), folder / "a.tiff"), UsageError);
-  EXPECT_THROW(write_image(gradient(40, 30), folder / "no/such/a.png"), UsageError);
+  EXPECT_THROW(write_image(gradient(40, 30), folder / "no/such/a.png"), OutputError);
   EXPECT_THROW(write_image({40, 30, {}}, folder / "e.png"), std::invalid_argument);
   EXPECT_FALSE(std::filesystem::exists(folder / "e.png"));
 }

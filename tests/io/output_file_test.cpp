@@ -25,7 +25,7 @@ std::string write_failure(const fs::path& path) {
     const std::string block(1 << 16, 'x');
     for (int i = 0; i < 4; ++i) file.write(block);
     file.commit();
-  } catch (const UsageError& error) {
+  } catch (const OutputError& error) {
     return error.what();
   }
   return {};
@@ -181,7 +181,7 @@ TEST(OutputFile, DetectsAFullDisk) {
   // One byte stays in the buffer until commit.
   OutputFile file("/dev/full");
   file.write("x");
-  EXPECT_THROW(file.commit(), UsageError);
+  EXPECT_THROW(file.commit(), OutputError);
 }
 
 TEST(OutputFile, WritesDevicesAndPipesDirectly) {

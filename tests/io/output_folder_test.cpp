@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 std::string refusal(const fs::path& path) {
   try {
     const OutputFolder folder(path);
-  } catch (const UsageError& error) {
+  } catch (const OutputError& error) {
     return error.what();
   }
   return {};
@@ -107,7 +107,7 @@ TEST(OutputFolder, AFolderThatAppearsMeanwhileIsNotReplaced) {
   {
     OutputFolder output(folder / "new");
     fs::create_directory(folder / "new");
-    EXPECT_THROW(output.commit(), UsageError);
+    EXPECT_THROW(output.commit(), OutputError);
   }
   EXPECT_EQ(names_in(folder.path()), Names{"new"});
 }
@@ -124,11 +124,11 @@ TEST(FolderLock, OneAtATime) {
     EXPECT_TRUE(first.is_held());
     EXPECT_TRUE(first.is_of(folder.path()));
     EXPECT_FALSE(first.is_of("/"));
-    EXPECT_THROW(FolderLock(folder.path()), UsageError);
+    EXPECT_THROW(FolderLock(folder.path()), OutputError);
   }
   EXPECT_TRUE(FolderLock(folder.path()).is_held());
   EXPECT_TRUE(fs::is_empty(folder.path()));
-  EXPECT_THROW(FolderLock(folder / "missing"), UsageError);
+  EXPECT_THROW(FolderLock(folder / "missing"), OutputError);
 }
 
 }  // namespace

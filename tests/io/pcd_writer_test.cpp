@@ -50,7 +50,7 @@ TEST(PcdWriter, HeaderIsWhatPclReads) {
 
 TEST(PcdWriter, FailsOnAFullDisk) {
   for (const PcdEncoding encoding : {PcdEncoding::kAscii, PcdEncoding::kBinary, PcdEncoding::kBinaryCompressed}) {
-    EXPECT_THROW(write_pcd("/dev/full", sample_clouds().front(), encoding), UsageError);
+    EXPECT_THROW(write_pcd("/dev/full", sample_clouds().front(), encoding), OutputError);
   }
 }
 

@@ -61,8 +61,8 @@ TEST(PlyWriter, FieldsMustFit) {
 
 TEST(PlyWriter, FailsOnAFullDisk) {
   const PointCloud cloud = sample_clouds().front();
-  EXPECT_THROW(write_ply("/dev/full", cloud), UsageError);
-  EXPECT_THROW(write_ply("/no/such/folder/a.ply", cloud), UsageError);
+  EXPECT_THROW(write_ply("/dev/full", cloud), OutputError);
+  EXPECT_THROW(write_ply("/no/such/folder/a.ply", cloud), OutputError);
 }
 
 }  // namespace

@@ -451,7 +451,7 @@ TEST(SessionPredictions, WrittenAndReadBackIsIdentical) {
   EXPECT_EQ(copy.world_points_confidence, session.world_points_confidence);
   EXPECT_EQ(copy.intrinsics, session.intrinsics);
   // An existing folder is somebody's data.
-  EXPECT_THROW(write_session_predictions(session, folder / "copy"), UsageError);
+  EXPECT_THROW(write_session_predictions(session, folder / "copy"), OutputError);
 }
 
 TEST(SessionPredictions, WrittenWholeOrNotAtAll) {

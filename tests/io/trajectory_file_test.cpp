@@ -331,7 +331,7 @@ TEST(TrajectoryFile, TumWrittenAndReadBackIsIdentical) {
     EXPECT_EQ(copy[i].position, t[i].position);
     EXPECT_EQ(copy[i].rotation.coeffs(), t[i].rotation.coeffs());
   }
-  EXPECT_THROW(write_tum_trajectory(t, folder / "no/such/poses.tum"), UsageError);
+  EXPECT_THROW(write_tum_trajectory(t, folder / "no/such/poses.tum"), OutputError);
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ G2oGraph read_g2o(const std::filesystem::path& path);
 
 /// Writes the same, numbers in their shortest form that reads back equal; `ids` empty: 0, 1, 2 ... Throws
 /// UnsupportedError for priors and widths, which the format does not hold, std::invalid_argument where ids are not as
-/// many as nodes, UsageError where the file cannot be written.
+/// many as nodes, OutputError where the file cannot be written.
 void write_g2o(const PoseGraph& graph, const std::filesystem::path& path, std::span<const std::uint64_t> ids = {});
 
 }  // namespace cmap

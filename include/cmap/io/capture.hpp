@@ -73,8 +73,8 @@ SessionPredictions read_session(const Capture& capture, std::size_t session, con
 /// Writes a capture, which appears under its name only when commit() says it is complete: until then everything goes to
 /// `<folder>.partial`, which open_capture does not take for a capture (see OutputFolder). Images and scans come by
 /// increasing time, each as soon as there is one; the rest once, in any order. Times are those of Capture: where the
-/// calibration has an offset, what is recorded is the time without it. Not thread-safe. Every failure to write is a
-/// UsageError that names path and reason; wrong use (times that do not increase) std::invalid_argument.
+/// calibration has an offset, what is recorded is the time without it. Not thread-safe. Every failure to write is an
+/// OutputError that names path and reason; wrong use (times that do not increase) std::invalid_argument.
 class CaptureWriter {
  public:
   CaptureWriter(const std::filesystem::path& folder, const CaptureCalibration& calibration);

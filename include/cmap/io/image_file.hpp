@@ -18,7 +18,7 @@ RgbImage read_image(const std::filesystem::path& path);
 RgbImage read_image(const std::filesystem::path& path, const CameraModel& camera);
 
 /// Writes .jpg, .jpeg (quality 95) or .png; the file appears under its name only when complete. Throws UsageError for
-/// another name or if it cannot be written, std::invalid_argument unless there are width * height > 0 pixels.
+/// another name, OutputError if it cannot be written, std::invalid_argument unless there are width * height > 0 pixels.
 void write_image(const RgbImage& image, const std::filesystem::path& path);
 
 }  // namespace cmap

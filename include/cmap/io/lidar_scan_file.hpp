@@ -12,7 +12,7 @@ namespace cmap {
 /// truncated, no x y z, a time further than 60 s from the scan's (nanoseconds?), a ring that fits no 16 bits.
 LidarScan read_lidar_scan(const std::filesystem::path& path, double timestamp_s);
 
-/// Writes a binary PCD file with the arrays that the scan has. Throws UsageError if it cannot be written,
+/// Writes a binary PCD file with the arrays that the scan has. Throws OutputError if it cannot be written,
 /// std::invalid_argument if an array has another length.
 void write_lidar_scan(const LidarScan& scan, const std::filesystem::path& path);
 

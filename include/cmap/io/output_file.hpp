@@ -11,7 +11,7 @@ namespace cmap {
 
 /// A file that appears under its name only when it is complete, by commit(); before, and if the program is killed, it
 /// has no name, or a temporary one where the file system insists on one. "-" is standard output. A closed pipe is no
-/// error; every other failure (no folder, no permission, full disk) throws UsageError naming path and reason.
+/// error; every other failure (no folder, no permission, full disk) throws OutputError naming path and reason.
 class OutputFile {
  public:
   explicit OutputFile(std::filesystem::path path);
@@ -46,7 +46,7 @@ class OutputFiles {
   std::list<OutputFile> files_;
 };
 
-/// Throws the UsageError that writing to `path` would end with, where that is known beforehand: a directory that is
+/// Throws the OutputError that writing to `path` would end with, where that is known beforehand: a directory that is
 /// missing, a protected file. For programs that work long before they write. An empty path is no output.
 void require_writable(const std::filesystem::path& path);
 

@@ -5,11 +5,11 @@
 
 namespace cmap {
 
-/// Makes a folder, and those above it, unless it is there. Throws UsageError naming it and the reason.
+/// Makes a folder, and those above it, unless it is there. Throws OutputError naming it and the reason.
 void make_folder(const std::filesystem::path& folder);
 
 /// Keeps other programs of ours out of a folder that is there, for as long as it lives; the system lets go of it when
-/// a program is killed. Throws UsageError where another one has it. Where the file system knows no locks it holds
+/// a program is killed. Throws OutputError where another one has it. Where the file system knows no locks it holds
 /// nothing, and says so.
 class FolderLock {
  public:
@@ -30,7 +30,7 @@ class FolderLock {
 /// A folder that appears under its name only when it is complete: filled as `<name>.partial` beside it, renamed by
 /// commit(), removed otherwise, by signals too. The name must be free. Whoever is killed outright leaves a rest to the
 /// next run, which replaces it; one that another program is filling, and one that holds anything but such a rest, is
-/// refused. Every failure throws UsageError naming the path and the reason.
+/// refused. Every failure throws OutputError naming the path and the reason.
 class OutputFolder {
  public:
   explicit OutputFolder(std::filesystem::path path);

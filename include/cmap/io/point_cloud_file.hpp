@@ -73,7 +73,7 @@ enum class PlyEncoding { kAscii, kBinaryLittleEndian };
 enum class PcdEncoding { kAscii, kBinary, kBinaryCompressed };
 
 /// Writes x y z (float where the origin is zero, else double, so that nothing is lost), the colors as stored, and the
-/// fields. The file appears under its name only when complete. Throws UsageError if it cannot be written,
+/// fields. The file appears under its name only when complete. Throws OutputError if it cannot be written,
 /// std::invalid_argument if a field's length is not the cloud's.
 void write_ply(const std::filesystem::path& path, const PointCloud& cloud, std::span<const PointField> fields = {},
                PlyEncoding encoding = PlyEncoding::kBinaryLittleEndian);

@@ -24,8 +24,8 @@ namespace cmap {
 SessionPredictions read_session_predictions(const std::filesystem::path& folder_or_npz, const Faults& faults = {});
 
 /// Writes the folder form, whole or not at all; the folder must not exist. Depth as float32, poses as float64; times
-/// are recorded without `time_offset_s`. Throws UsageError if it cannot be written or a name cannot stand in
-/// frames.csv, std::invalid_argument if sizes differ.
+/// are recorded without `time_offset_s`. Throws OutputError if it cannot be written, UsageError if a name
+/// cannot stand in frames.csv, std::invalid_argument if sizes differ.
 void write_session_predictions(const SessionPredictions& session, const std::filesystem::path& folder,
                                double time_offset_s = 0.0);
 

@@ -44,7 +44,7 @@ std::pair<TrajectoryFile, TrajectoryFile> read_trajectory_pair(const std::filesy
                                                                const std::optional<std::filesystem::path>& times);
 
 /// Writes a TUM file whose numbers read back as they were. The file appears under its name only when complete. Throws
-/// UsageError if it cannot be written.
+/// OutputError if it cannot be written.
 void write_tum_trajectory(const Trajectory& trajectory, const std::filesystem::path& path);
 
 /// The same into a file that the caller commits.

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 [[noreturn]] void fail(const fs::path& path, int error) {
   const std::string name = path == kStandardStream ? "standard output" : path.string();
-  throw UsageError(fmt::format("{}: cannot be written: {}", name, std::strerror(error)));
+  throw OutputError(fmt::format("{}: cannot be written: {}", name, std::strerror(error)));
 }
 
 /// A device, a pipe, or a name like /dev/stdout: nothing may be renamed over it.

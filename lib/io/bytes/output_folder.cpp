@@ -26,7 +26,7 @@ namespace {
 constexpr const char* kMark = ".unfinished";
 
 [[noreturn]] void fail(const fs::path& path, std::string_view reason) {
-  throw UsageError(fmt::format("{}: cannot be written: {}", path.string(), reason));
+  throw OutputError(fmt::format("{}: cannot be written: {}", path.string(), reason));
 }
 
 /// True if it was made, false if it was there.
@@ -89,7 +89,7 @@ FolderLock claim(const fs::path& partial, const fs::path& path) {
 void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) throw UsageError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+  if (error) throw OutputError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
 }
 
 FolderLock::FolderLock(const fs::path& folder) {

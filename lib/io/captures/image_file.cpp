@@ -75,7 +75,7 @@ void write_image(const RgbImage& image, const std::filesystem::path& path) {
   cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
   std::vector<unsigned char> bytes;
   OutputFile file(path);
-  if (!cv::imencode(extension, bgr, bytes)) throw UsageError(path.string() + ": the image could not be encoded");
+  if (!cv::imencode(extension, bgr, bytes)) throw OutputError(path.string() + ": the image could not be encoded");
   file.write(bytes.data(), bytes.size());
   file.commit();
 }
