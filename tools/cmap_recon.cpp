@@ -85,7 +85,7 @@ cmap::ReconstructionOptions resolve_options(const Arguments& a) {
   cmap::apply_reconstruction_preset(options, a.preset);
   if (!a.config.empty()) cmap::apply_reconstruction_config_file(options, a.config);
   for (const std::string& setting : a.settings) cmap::set_reconstruction_option(options, setting);
-  if (!a.registration.empty()) options.registration = cmap::registration_from_name(a.registration);
+  if (!a.registration.empty()) cmap::set_reconstruction_option(options, "registration=" + a.registration);
   return options;
 }
 
@@ -117,7 +117,9 @@ void write_figure(const cmap::Reconstruction& r, const std::string& name, cmap::
 }
 #else
 void check_figure(const Arguments& a) {
-  if (!a.figure.empty()) throw cmap::UnsupportedError("--figure: this build has no figures (tools/install_dependencies.sh --all, build again)");
+  if (!a.figure.empty())
+    throw cmap::UnsupportedError(
+        "--figure: this build has no figures (tools/install_dependencies.sh --all, build again)");
 }
 void write_figure(const cmap::Reconstruction&, const std::string&, cmap::OutputFile&) {}
 #endif

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "cmap/core/version.hpp"
-#include "session_state.hpp"
+#include "posegraph/stage.hpp"
 
 namespace cmap {
 namespace {
@@ -16,7 +16,7 @@ std::string number_or_dash(double value) { return std::isnan(value) ? "-" : fmt:
 
 std::string session_line(const SessionOutcome& s) {
   std::string line = fmt::format("{:<14} {:>6}", s.name, s.frames);
-  if (!s.dropped.empty()) return line + "  dropped: " + s.dropped + "\n";
+  if (s.dropped) return line + "  dropped: " + *s.dropped + "\n";
   return line + fmt::format("  {:>8.4g}  {:>6.4f}  {:>9.4f}  {:>6}  {:>7}  {:>7}\n", s.scale_prefusion,
                             s.scale_registration, s.linearity, s.scale_inlier ? "yes" : "no", number_or_dash(s.overlap),
                             number_or_dash(s.rmse_m));
@@ -24,26 +24,19 @@ std::string session_line(const SessionOutcome& s) {
 
 }  // namespace
 
-Json sessions_json(const Reconstruction& r) {
-  Json sessions = Json::array();
-  for (const SessionOutcome& outcome : r.sessions) sessions.push_back(written(outcome));
-  return {{"sessions", sessions}};
-}
+Json sessions_json(const Reconstruction& r) { return {{"sessions", state_json(r.sessions)}}; }
 
 Json reconstruction_json(const Reconstruction& r, const ReconstructionOptions& options, const std::string& command) {
   Json warnings = Json::array(), stages = Json::object();
   for (const Warning& w : r.warnings) warnings.push_back({{"id", w.id}, {"message", w.message}});
   for (const auto& [stage, seconds] : r.stage_seconds) stages[std::string(stage_name(stage))] = seconds;
+  Json pose_graph{{"links", r.links.size()}};
+  pose_graph.update(state_json(r.graph));
   return {{"schema", "cmap.reconstruction/1"},
           {"tool", {{"name", "cmap"}, {"version", kVersion}}},
           {"options", to_json(options)},
           {"sessions", sessions_json(r).at("sessions")},
-          {"pose_graph",
-           {{"links", r.links.size()},
-            {"cost_before", r.graph_cost_before},
-            {"cost_after", r.graph_cost_after},
-            {"iterations", r.graph_iterations},
-            {"largest_correction_m", r.largest_correction_m}}},
+          {"pose_graph", pose_graph},
           {"map", {{"points", r.map.size()}, {"points_fused", r.points_fused}}},
           {"warnings", warnings},
           {"run", {{"command", command}, {"stages", stages}}}};

@@ -17,7 +17,6 @@ StageFiles::StageFiles(fs::path folder, bool resume, Json key)
 std::optional<StageFiles::Json> StageFiles::load(std::string_view stage) const {
   if (!resume_ || folder_.empty()) return std::nullopt;
   std::ifstream file(folder_ / fmt::format("{}.json", stage));
-  // Whatever is not as this program wrote it is found again.
   Json json = Json::parse(file, nullptr, /*allow_exceptions=*/false);
   if (!json.is_object() || !json.contains("key") || json["key"] != key_ || !json.contains("found")) return std::nullopt;
   return json["found"];

@@ -81,7 +81,7 @@ Image draw_reconstruction(const Reconstruction& r) {
   };
   std::vector<Panel> panels{{"after pre-fusion", "", &r.prefusion}};
   if (!r.registration.empty()) panels.push_back({"after registration", "", &r.registration});
-  panels.push_back({"final", fmt::format("largest correction {:.2f} m", r.largest_correction_m), &r.poses});
+  panels.push_back({"final", fmt::format("largest correction {:.2f} m", r.graph.largest_correction_m), &r.poses});
   std::vector<PointBlocks> blocks(panels.size());
   std::vector<Layer> layers;
   for (std::size_t p = 0; p < panels.size(); ++p) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "align/align_testing.hpp"
-#include "cmap/recon/session_registration.hpp"
+#include "cmap/recon/session_placement.hpp"
 
 namespace cmap::test {
 

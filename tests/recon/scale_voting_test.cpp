@@ -2,8 +2,8 @@
 
 #include <set>
 
+#include "prefusion/scale_correction.hpp"
 #include "recon/recon_testing.hpp"
-#include "scale_correction.hpp"
 
 namespace cmap {
 namespace {

@@ -4,79 +4,13 @@
 
 #include <cmath>
 
+#include "recon/session_testing.hpp"
+
 namespace cmap {
 namespace {
 
-constexpr int kWidth = 40, kHeight = 30;
-
-/// Depth of a bumpy scene before camera `frame` that moves along x by a meter each: what both sessions see of it.
-double scene_depth(int u, int v, int frame) { return 6.0 + 2.0 * std::sin(0.3 * u + frame) + 1.5 * std::cos(0.4 * v); }
-
-/// A session of frames first ... first + n - 1, its unit `unit` meters; frame f's camera is at x = f.
-SessionPredictions session_of(int first, int n, double unit) {
-  SessionPredictions session;
-  session.width = kWidth;
-  session.height = kHeight;
-  for (int i = 0; i < n; ++i) {
-    session.frames.push_back({static_cast<std::size_t>(i), 0.5 * (first + i), "", kWidth, kHeight});
-    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-    T.translation().x() = -i / unit;
-    session.T_camera_session.push_back(T);
-    session.intrinsics.push_back((Eigen::Matrix3d() << 30, 0, 20, 0, 30, 15, 0, 0, 1).finished());
-    for (int v = 0; v < kHeight; ++v) {
-      for (int u = 0; u < kWidth; ++u) {
-        session.depth.push_back(static_cast<float>(scene_depth(u, v, first + i) / unit));
-        session.depth_confidence.push_back(3.0f);
-        session.images.push_back({100, 100, 100});
-      }
-    }
-  }
-  return session;
-}
-
-Similarity at(double scale, const Eigen::Vector3d& translation, double turn_rad) {
-  Similarity T;
-  T.scale = scale;
-  T.rotation = Eigen::AngleAxisd(turn_rad, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
-  T.translation = translation;
-  return T;
-}
-
-TEST(SessionGraph, FramesOfASessionAreWhereTheSimilarityPutsThem) {
-  const SessionPredictions session = session_of(0, 3, 2.0);
-  const PlacedSession placed = placed_session(4, frames_of(session), at(2.0, {1, 2, 3}, 0.0), 0.1);
-  EXPECT_EQ(placed.index, 4u);
-  EXPECT_EQ(placed.time_s, (std::vector<double>{0.0, 0.5, 1.0}));
-  EXPECT_LT((placed.T_world_camera[2].translation() - Eigen::Vector3d(3, 2, 3)).norm(), 1e-12) << "2 m along x";
-}
-
-/// Two sessions of different units; the second is displaced by a known motion: the link brings it back.
-TEST(SessionGraph, ALinkFindsTheMotionBetweenSessions) {
-  const SessionPredictions a = session_of(0, 6, 2.0), b = session_of(4, 6, 0.5);
-  const PlacedSession placed_a = placed_session(0, frames_of(a), at(2.0, {0, 0, 0}, 0.0), 0.1);
-  const Similarity truth = at(0.5, {4, 0, 0}, 0.0);
-  const Similarity error = at(1.0, {0.15, -0.1, 0.08}, 0.01);
-  const PlacedSession placed_b = placed_session(1, frames_of(b), error * truth, 0.1);
-  std::string reason;
-  const auto link = link_sessions(a, placed_a, 1.5, b, placed_b, 1.5, {}, reason);
-  ASSERT_TRUE(link) << reason;
-  EXPECT_EQ(a.frames[link->from_frame].time_s, b.frames[link->to_frame].time_s);
-  // One camera, seen by both: the identity. Depths are floats of 10 m, and ICP's thinned points of one surface agree
-  // to a small part of their 0.2 m voxel.
-  EXPECT_LT(link->T_from_to.translation().norm(), 0.01);
-  EXPECT_LT(Eigen::AngleAxisd(link->T_from_to.linear()).angle(), 0.002);
-}
-
-TEST(SessionGraph, SessionsApartHaveNoLink) {
-  const SessionPredictions a = session_of(0, 3, 1.0), b = session_of(7, 3, 1.0);
-  const PlacedSession placed_a = placed_session(0, frames_of(a), {}, 0.1),
-                      placed_b = placed_session(1, frames_of(b), {}, 0.1);
-  std::string reason;
-  EXPECT_FALSE(link_sessions(a, placed_a, 1.5, b, placed_b, 1.5, {}, reason));
-  EXPECT_EQ(reason, "no frame is shared");
-  EXPECT_FALSE(link_sessions(a, placed_a, 99.0, a, placed_a, 99.0, {}, reason));
-  EXPECT_EQ(reason, "0 pixels of shared frames are good in both");
-}
+using test::at;
+using test::session_of;
 
 /// 3 + 4 frames: 2 + 3 consecutive edges, 1 + 2 second-next, one link, a prior for each frame.
 TEST(SessionGraph, HasTheEdgesOfThePipeline) {

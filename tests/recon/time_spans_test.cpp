@@ -1,4 +1,4 @@
-#include "time_spans.hpp"
+#include "sessions/time_spans.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

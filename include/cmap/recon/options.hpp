@@ -4,34 +4,23 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "cmap/recon/lidar_map.hpp"
-#include "cmap/recon/post_fusion.hpp"
+#include "cmap/recon/map_fusion.hpp"
 #include "cmap/recon/pre_fusion.hpp"
-#include "cmap/recon/session_points.hpp"
+#include "cmap/recon/registration.hpp"
+#include "cmap/recon/session_graph.hpp"
+#include "cmap/recon/session_input.hpp"
 
 namespace cmap {
 
-/// How the scales of neighboring sessions are compared.
-enum class OverlapScale {
-  kDepths,   ///< by the depths of the same pixels
-  kCenters,  ///< the paper's: by the camera centers of shared frames
-};
-
-/// Everything that can change the map of a reconstruction (PIPELINE). Defaults are the sound version; the preset
-/// "paper" is the text as printed.
+/// Everything that can change the map of a reconstruction (PIPELINE), by stage. Defaults are the sound version; the
+/// preset "paper" is the text as printed.
 struct ReconstructionOptions {
-  PointSource points = PointSource::kDepth;
-  ConfidenceCut confidence;
+  SessionInputOptions input;  ///< of all stages
   PreFusionOptions prefusion;
-  OverlapScale overlap_scale = OverlapScale::kDepths;
-  Registration registration = Registration::kRobust;
-  double registration_voxel_m = 0.2;
-  LidarMapOptions lidar;
+  RegistrationOptions registration;
   bool pose_graph = true;  ///< false: sessions stay where registration has put them
-  bool lidar_priors = true;
-  double fusion_voxel_m = 0.05;
-  double fusion_max_range_m = 0.0;  ///< points farther from their camera are left out of the map; 0: none
-  double fusion_doubt = 0.5;  ///< voxels less sure than this share of what lies around them are left out; see MapFusion
+  SessionGraphOptions graph;
+  FusionOptions fusion;
 };
 
 /// Sets the options that a JSON object names (comments allowed). Throws UsageError naming `source` and the key:

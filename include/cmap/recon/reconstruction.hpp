@@ -13,7 +13,6 @@
 #include "cmap/geometry/point_cloud.hpp"
 #include "cmap/io/capture.hpp"
 #include "cmap/recon/options.hpp"
-#include "cmap/recon/session_graph.hpp"
 
 namespace cmap {
 
@@ -35,11 +34,18 @@ struct SessionOutcome {
   double linearity = 0.0;
   bool rotation_corrected = false;
   bool scale_inlier = true;
-  double prefusion_rmse_m = 0.0;   ///< of its camera centers
-  double overlap = 0.0;            ///< with the LiDAR; NaN: not measured, as there are no scans
-  double rmse_m = 0.0;             ///< of these matches; likewise
-  std::vector<std::string> flags;  ///< doubts, for people
-  std::string dropped;             ///< why it is not in the map; empty: it is
+  double prefusion_rmse_m = 0.0;       ///< of its camera centers
+  double overlap = 0.0;                ///< with the LiDAR; NaN: not measured, as there are no scans
+  double rmse_m = 0.0;                 ///< of these matches; likewise
+  std::vector<std::string> flags;      ///< doubts, for people
+  std::optional<std::string> dropped;  ///< why it is not in the map; none: it is
+};
+
+/// What the pose graph did.
+struct GraphSummary {
+  double cost_before = 0.0, cost_after = 0.0;
+  int iterations = 0;
+  double largest_correction_m = 0.0;  ///< of a camera
 };
 
 /// Some of a session's points, for pictures: each in its frame's camera, in the session's unit.
@@ -53,9 +59,7 @@ struct Reconstruction {
   std::vector<SessionOutcome> sessions;
   std::vector<PlacedSession> prefusion, registration, poses;  ///< of the sessions in the map, after each stage
   std::vector<SessionLink> links;
-  double graph_cost_before = 0.0, graph_cost_after = 0.0;
-  int graph_iterations = 0;
-  double largest_correction_m = 0.0;  ///< of a camera by the pose graph
+  GraphSummary graph;
   PointCloud map;
   std::uint64_t points_fused = 0;
   std::vector<SessionSketch> sketches;  ///< of the sessions in the map, where it was fused

@@ -40,7 +40,7 @@ FramePoints frame_points(const SessionPredictions& session, std::size_t frame, d
 
 /// Points of a whole session and how sure it is of each, relative to each other.
 struct SessionCloud {
-  PointCloud cloud;  ///< no color: for registration
+  PointCloud cloud;  ///< no color
   Array<float> confidence;
 };
 
