@@ -17,8 +17,6 @@
 namespace cmap {
 namespace {
 
-constexpr double kCellVoxels = 5.0;  ///< side of the cells that say where the target has something
-
 /// first (last / first)^f; zeros stay zero.
 double annealed(double first, double last, double f) {
   if (first == last || first <= 0.0) return f < 1.0 ? first : last;
@@ -89,7 +87,7 @@ class Sim3Registration {
         thinned_target_(thinned_target(target, options.voxel_m)),
         source_(thinned_source_),
         target_(thinned_target_, static_cast<std::size_t>(options.neighbors)),
-        seen_(thinned_target_, options.voxel_m > 0.0 ? kCellVoxels * options.voxel_m : options.gate1_m),
+        seen_(thinned_target_, options.voxel_m > 0.0 ? options.crop_cell * options.voxel_m : options.gate1_m),
         weights_(thinned_weights(source, weights, options.voxel_m / initial_scale, thinned_source_.size())),
         s0_(initial_scale) {}
 
@@ -206,6 +204,7 @@ void check_options(const Sim3IcpOptions& o) {
   require(std::isfinite(o.gate0_m) || o.gate1_m == o.gate0_m, "gate1_m", o.gate1_m, "an endless gate cannot shrink");
   require(std::isfinite(o.gate0_m) || o.kernel == RobustKernel::kNone, "gate0_m", o.gate0_m,
           "an endless gate gives the kernel no width");
+  require(o.crop_cell > 0.0 && std::isfinite(o.crop_cell), "crop_cell", o.crop_cell, "a size above 0 is needed");
   require(o.kernel_width > 0.0, "kernel_width", o.kernel_width, "a share above 0 is needed");
   require(o.iterations > 0, "iterations", o.iterations, "at least 1 is needed");
   require(o.annealed_iterations >= 0, "annealed_iterations", o.annealed_iterations, "0 or more are needed");

@@ -86,6 +86,7 @@ void describe_registration(Fields& f, FieldsOf<Fields, RegistrationOptions>& reg
   f.field("registration_first_gate", registration.first_gate, kPositive);
   f.field("registration_first_gate_sigmas", registration.first_gate_sigmas, kNotNegative);
   f.field("registration_last_gate", registration.last_gate, kPositive);
+  f.field("registration_crop_cell", registration.crop_cell, kPositive);
   f.field("registration_first_beta", registration.first_beta, kPositive);
   f.field("registration_last_beta", registration.last_beta, kPositive);
   f.field("registration_iterations", registration.iterations, kAtLeastOne);
@@ -108,6 +109,8 @@ void describe_link(Fields& f, FieldsOf<Fields, LinkOptions>& link) {
   f.field("link_thinning", link.thinning, kPositive);
   f.field("link_gate", link.gate, kPositive);
   f.field("link_iterations", link.iterations, kAtLeastOne);
+  f.field("link_kernel_width", link.kernel_width, kPositive);
+  f.field("link_neighbors", link.neighbors, NumberRange{5, 64});
 }
 
 template <class Fields>

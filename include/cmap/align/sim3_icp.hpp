@@ -14,12 +14,13 @@ namespace cmap {
 /// thinned source, D its size in its own units. beta and the gate go geometrically from their first to their last value
 /// over the annealed iterations.
 struct Sim3IcpOptions {
-  double voxel_m = 0.2;  ///< of the thinned source, in the target's units; the target's is half; 0: as they are
-  double beta0 = 0.1;    ///< strength of the expectation at first: 0.1 takes 45 % of a step, 1 takes 8 %
-  double beta1 = 1e-4;   ///< at the end
-  double gate0_m = 2.0;  ///< farther pairs are no matches, at first; infinity is possible
-  double gate1_m = 0.6;  ///< at the end
-  bool crop = true;      ///< only source points inside the target's box and its occupied cells of 5 voxels count
+  double voxel_m = 0.2;    ///< of the thinned source, in the target's units; the target's is half; 0: as they are
+  double beta0 = 0.1;      ///< strength of the expectation at first: 0.1 takes 45 % of a step, 1 takes 8 %
+  double beta1 = 1e-4;     ///< at the end
+  double gate0_m = 2.0;    ///< farther pairs are no matches, at first; infinity is possible
+  double gate1_m = 0.6;    ///< at the end
+  bool crop = true;        ///< only source points inside the target's box and its occupied cells count
+  double crop_cell = 5.0;  ///< side of these cells, in voxels
   RobustKernel kernel = RobustKernel::kCauchy;
   double kernel_width = 0.5;   ///< scale of the kernel as a share of the gate
   bool size_from_box = false;  ///< D is the diagonal of the source's box; else sqrt(12 mean |p~|^2), blind to strays

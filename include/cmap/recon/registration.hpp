@@ -27,6 +27,7 @@ struct RegistrationOptions {
   double first_gate = 10.0;        ///< farther pairs are no matches
   double first_gate_sigmas = 3.0;  ///< kRobust: or this many RMSE of pre-fusion, where that is more
   double last_gate = 3.0;          ///< kRobust: at the end
+  double crop_cell = 5.0;          ///< kRobust: side of the cells that say where the LiDAR saw something, in voxels
   double first_beta = 0.1;         ///< strength of the expected scale
   double last_beta = 1e-4;         ///< kRobust: at the end
   int iterations = 60;             ///< at most

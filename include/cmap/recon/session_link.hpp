@@ -26,12 +26,14 @@ struct NotLinked {
 };
 
 struct LinkOptions {
-  int min_pixels = 100;     ///< good in both sessions
-  int max_pixels = 40'000;  ///< evenly chosen of more
-  int rounds = 10;          ///< of reweighting the motion between equal pixels
-  double thinning = 0.5;    ///< the clouds of ICP are thinned to this share of its voxel
-  double gate = 3.0;        ///< of ICP, in voxels, or median distances of equal pixels where that is more
-  int iterations = 30;      ///< of ICP, at most
+  int min_pixels = 100;       ///< good in both sessions
+  int max_pixels = 40'000;    ///< evenly chosen of more
+  int rounds = 10;            ///< of reweighting the motion between equal pixels
+  double thinning = 0.5;      ///< the clouds of ICP are thinned to this share of its voxel
+  double gate = 3.0;          ///< of ICP, in voxels, or median distances of equal pixels where that is more
+  int iterations = 30;        ///< of ICP, at most
+  double kernel_width = 0.1;  ///< of ICP's Cauchy weights, as a share of the gate
+  int neighbors = 10;         ///< that ICP's normals are fitted to
 };
 
 /// A session that is to be linked.

@@ -30,6 +30,7 @@ Sim3IcpOptions icp_options(const RegistrationOptions& o, double sigma_m) {
   options.gate1_m = o.last_gate * o.voxel_m;
   options.annealed_iterations = o.annealed_iterations;
   options.kernel_width = o.kernel_width;
+  options.crop_cell = o.crop_cell;
   return options;
 }
 

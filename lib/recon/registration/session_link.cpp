@@ -84,6 +84,8 @@ std::optional<FoundMotion> refined(const PixelPairs& pairs, const FoundMotion& m
                                    const LinkOptions& options) {
   IcpOptions icp_options;
   icp_options.metric = IcpMetric::kGicp;
+  icp_options.kernel_width = options.kernel_width;
+  icp_options.neighbors = options.neighbors;
   icp_options.levels = {
       {voxel_m, std::max(options.gate * voxel_m, options.gate * motion.distance_m), options.iterations}};
   const double thinned_m = options.thinning * voxel_m;
