@@ -5,5 +5,5 @@
 int main() {
   cmap::ReconstructionOptions options;
   cmap::apply_reconstruction_config(options, R"({"fusion_voxel_m": 0.1})", "here");
-  return options.fusion_voxel_m == 0.1 ? 0 : 1;
+  return options.fusion.voxel_m == 0.1 ? 0 : 1;
 }
