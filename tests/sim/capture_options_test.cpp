@@ -95,6 +95,8 @@ TEST(CaptureOptions, RefusalsNameSourceSectionAndKey) {
   EXPECT_THAT(refusal(R"({"lidar": {"model": "hesai"}})"), HasSubstr("models are spinning_16"));
   EXPECT_THAT(refusal(R"({"lidar": {"pattern": "round"}})"), HasSubstr("is none of spinning, avia, mid360"));
   EXPECT_THAT(refusal(R"({"scene": {"kind": "town", "furniture": 1}})"), HasSubstr("unknown key \"furniture\""));
+  EXPECT_THAT(refusal(R"({"camera": {"format": "gif"}})"), HasSubstr("camera: format: \"gif\" is none of jpg, png"));
+  EXPECT_EQ(refusal(R"({"scene": {"furniture": 0.5, "kind": "indoor"}})"), "") << "whatever the order of keys";
   EXPECT_THAT(refusal(R"({"seed": 1.5})"), HasSubstr("seed"));
   EXPECT_THAT(refusal(R"([1])"), HasSubstr("expected a JSON object"));
   EXPECT_THAT(refusal(R"({"imu": 3})"), HasSubstr("imu: expected a JSON object"));

@@ -30,7 +30,7 @@ CaptureOptions tiny(bool with_errors) {
   o.camera.width_px = 160;
   o.camera.height_px = 120;
   o.camera.focal_px = 110.0;
-  o.camera.format = "png";
+  o.camera.format = PictureFormat::kPng;
   o.predictions.width_px = 70;
   o.predictions.session_length = 4;
   o.truth.map_points_per_m2 = 10.0;
@@ -247,7 +247,6 @@ TEST(SimulateCapture, LeavesNothingBehindWhereItCannotBe) {
     EXPECT_TRUE(fs::is_empty(folder.path()));
   };
   refused([](CaptureOptions& o) { o.imu.rate_hz = -1; });
-  refused([](CaptureOptions& o) { o.camera.format = "gif"; });
   refused([](CaptureOptions& o) { o.camera.begin_s = 1000; });
   refused([](CaptureOptions& o) { o.predictions.width_px = 100; });
   refused([](CaptureOptions& o) { o.predictions.session_overlap = o.predictions.session_length; });

@@ -58,6 +58,8 @@ struct MountOptions {
   Eigen::Vector3d camera_roll_pitch_yaw_deg = Eigen::Vector3d::Zero();
 };
 
+enum class PictureFormat { kJpg, kPng };
+
 /// The camera and its pictures.
 struct CameraOptions {
   CameraProjection projection = CameraProjection::kPinhole;
@@ -72,7 +74,7 @@ struct CameraOptions {
   double vignetting = 0.0;
   double exposure_noise = 0.0;  ///< standard deviation of the logarithm of a picture's gain
   double pixel_noise_u8 = 0.0;  ///< standard deviation of a pixel's channel, of 255
-  std::string format = "jpg";   ///< or "png"
+  PictureFormat format = PictureFormat::kJpg;
 };
 
 /// What the capture says that is not so, for experiments on what follows.

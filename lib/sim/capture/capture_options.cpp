@@ -10,6 +10,7 @@
 #include "cmap/core/error.hpp"
 #include "cmap/core/spelling.hpp"
 #include "cmap/io/json_text.hpp"
+#include "cmap/io/options_json.hpp"
 
 namespace cmap {
 namespace {
@@ -18,7 +19,13 @@ using Json = nlohmann::ordered_json;
 
 template <class Options>
 void read_section(Options& options, const Json& json, const std::string& name) {
-  read_fields(options, json, name);
+  set_from_json(option_fields(options), json, name);
+}
+
+/// The kind decides which other fields there are.
+void read_section(SceneChoice& options, const Json& json, const std::string& name) {
+  if (json.is_object() && json.contains("kind")) set_from_json(kind_field(options), json.at("kind"), name);
+  set_from_json(option_fields(options), json, name);
 }
 
 /// A model is where the LiDAR's other fields start from.
@@ -29,10 +36,8 @@ void read_section(LidarOptions& options, Json json, const std::string& name) {
     options = lidar_model(json["model"].get<std::string>());
     json.erase("model");
   }
-  read_fields(options, json, name);
+  set_from_json(option_fields(options), json, name);
 }
-
-constexpr NumberRange kDuration{.low = 0.0};
 
 void apply_sections(CaptureOptions& options, const Json& config) {
   if (!config.is_object()) throw UsageError("expected a JSON object of options");
@@ -46,10 +51,7 @@ void apply_sections(CaptureOptions& options, const Json& config) {
     });
     if (!is_section) top[key] = value;
   }
-  FieldReader reader(top, "capture");
-  reader.field("seed", options.seed, kNotNegative);
-  reader.field("max_duration_s", options.max_duration_s, kDuration);
-  reader.finish();
+  set_from_json(option_fields(options), top, "capture");
 }
 
 Eigen::Matrix3d rotation_of(const Eigen::Vector3d& roll_pitch_yaw_deg) {
@@ -97,10 +99,9 @@ void apply_capture_preset(CaptureOptions& options, const std::string& name) {
 }
 
 Json to_json(const CaptureOptions& options) {
-  Json json;
-  json["seed"] = options.seed;
-  json["max_duration_s"] = options.max_duration_s;
-  for_each_section(options, [&](const char* name, const auto& section) { json[name] = written_fields(section); });
+  CaptureOptions copy = options;
+  Json json = options_json(option_fields(copy));
+  for_each_section(copy, [&](const char* name, auto& section) { json[name] = options_json(option_fields(section)); });
   return json;
 }
 

@@ -30,14 +30,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void check_options(const CaptureOptions& options) {
-  for_each_section(options, [](const char* name, const auto& section) { check_fields(section, name); });
+void check_capture_options(CaptureOptions options) {
+  for_each_section(options, [](const char* name, auto& section) { check_fields(section, name); });
   check(camera_of(options.camera));
   network_camera(camera_of(options.camera), options.predictions.width_px);
   cut_sessions(1, options.predictions.session_length, options.predictions.session_overlap);
-  if (options.camera.format != "jpg" && options.camera.format != "png") {
-    throw UsageError(fmt::format("camera: format: \"{}\" is neither jpg nor png", options.camera.format));
-  }
 }
 
 /// What capture.json says, with the errors asked for.
@@ -157,7 +154,8 @@ class CaptureRun {
     RgbImage image = render_image(scene_, camera, T_world_camera(image_times_[i]),
                                   {o_.camera.supersampling, gain(i), o_.camera.vignetting});
     add_pixel_noise(image, i);
-    const fs::path file = writer_.add_image(stated_time(i), "." + o_.camera.format);
+    const fs::path file =
+        writer_.add_image(stated_time(i), fmt::format(".{}", name_of(o_.camera.format, kPictureFormatNames)));
     write_image(image, file);
     image_names_.push_back(file.filename().string());
     return image;
@@ -247,7 +245,7 @@ class CaptureRun {
 
 void simulate_capture(const CaptureOptions& options, const fs::path& folder, const Execution& execution) {
   const ExecutionScope scope(execution);
-  check_options(options);
+  check_capture_options(options);
   report_progress("scene", 0.0);
   CaptureRun(options, folder).make();
 }

@@ -82,7 +82,7 @@ void append_points(SessionPredictions& predictions, const PredictedDepth& predic
                                              predicted.confidence.end());
 }
 
-void check_options(const PredictionOptions& options) {
+void check_prediction_options(const PredictionOptions& options) {
   check_fields(options, "predictions");
   if (options.sky_depth_m < options.max_depth_m) {
     throw UsageError("predictions: sky_depth_m must be at least max_depth_m");
@@ -93,7 +93,7 @@ void check_options(const PredictionOptions& options) {
 
 SimulatedSession simulate_session(std::span<const NetworkFrame* const> frames, const CameraModel& camera,
                                   std::size_t number, const PredictionOptions& o, std::uint64_t seed) {
-  check_options(o);
+  check_prediction_options(o);
   check_frames(frames, camera);
   SimulatedSession session;
   session.unit_m = drawn_unit_m(number, o, seed);
