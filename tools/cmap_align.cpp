@@ -6,13 +6,17 @@
 #include <nlohmann/json.hpp>
 
 #include "cmap/align/align.hpp"
+#include "cmap/align/align_method.hpp"
 #include "cmap/align/tanks_and_temples.hpp"
 #include "cmap/align/trajectory.hpp"
 #include "cmap/core/execution.hpp"
+#include "command_line.hpp"
 #include "files.hpp"
 #include "program.hpp"
 
 namespace {
+
+using cmap::AlignKind;
 
 constexpr const char* kDescription =
     "Finds the transform T_dst_src that moves a point-cloud map SRC onto another, DST, in the frame of DST.\n"
@@ -30,7 +34,9 @@ constexpr const char* kExample =
     "error.";
 
 struct Arguments {
-  std::string source, target, method = "gicp", initial, times, output, json, cloud, fit = "sim3";
+  std::string source, target, initial, times, output, json, cloud;
+  cmap::AlignMethod method{AlignKind::kRegistration, &cmap::registration_method("gicp")};
+  cmap::TrajectoryFit fit = cmap::TrajectoryFit::kSim3;
   double voxel_m = 0.0, max_distance_m = 0.0, tau_m = 0.0, max_gap_s = 0.15;
   bool scale = false, keep_noise = false;
   std::vector<std::uint8_t> classes;
@@ -39,10 +45,14 @@ struct Arguments {
   std::vector<std::string> outputs() const { return {output, json, cloud}; }
 };
 
-/// The registration methods, and what else aligns.
-std::vector<std::string> method_names() {
-  std::vector<std::string> names = cmap::registration_names();
-  for (const char* other : {"tanksandtemples", "trajectory"}) names.emplace_back(other);
+/// Those of registration first.
+cmap::EnumNames<cmap::AlignMethod> method_names() {
+  cmap::EnumNames<cmap::AlignMethod> names;
+  for (const auto kind : {AlignKind::kRegistration, AlignKind::kTanksAndTemples, AlignKind::kTrajectory}) {
+    for (const auto& named : cmap::align_method_names()) {
+      if (named.first.kind == kind) names.push_back(named);
+    }
+  }
   return names;
 }
 
@@ -55,60 +65,56 @@ std::string description() {
   return fmt::format(kDescription, methods);
 }
 
-void add_options(CLI::App& app, Arguments& a) {
-  const auto positive = CLI::Range(1e-9, 1e9).description("");
-  app.add_option("SRC", a.source, "map or trajectory to move")->required()->type_name("FILE");
-  app.add_option("DST", a.target, "map or trajectory that stays")->required()->type_name("FILE");
-  app.add_option("--method", a.method, "one of these [gicp]")->type_name("NAME")->check(cmap::one_of(method_names()));
-  app.add_option("-o,--output", a.output, "transform to write: 4x4 as text")->type_name("FILE");
-  app.add_option("--output-cloud", a.cloud, "SRC as moved onto DST, to write")->type_name("FILE.ply");
-  app.add_option("--json", a.json, "everything about the result, to write")->type_name("FILE");
-  app.add_option("--initial", a.initial, "4x4 matrix T_dst_src to start from [identity]")->type_name("FILE");
-  app.add_option("--voxel", a.voxel_m, "the source is thinned to this, the target to half [size of DST / 400]")
-      ->type_name("M")
-      ->check(positive);
-  app.add_option("--max-distance", a.max_distance_m, "farther pairs are no matches [10 voxels]")
-      ->type_name("M")
-      ->check(positive);
-  app.add_flag("--scale", a.scale, "estimate the scale too, where the method leaves the choice");
-  app.add_option("--tau", a.tau_m, "threshold of tanksandtemples")->type_name("M")->check(positive);
-  app.add_option("--fit", a.fit, "of trajectories: first-frame, se3, sim3 [sim3]")
-      ->type_name("NAME")
-      ->check(cmap::one_of({"first-frame", "se3", "sim3"}));
-  app.add_option("--max-gap", a.max_gap_s, "poses farther apart are not interpolated between [0.15]")
-      ->type_name("S")
-      ->check(positive);
-  app.add_option("--times", a.times, "times of poses that have none (KITTI), one number of seconds a line")
-      ->type_name("FILE");
-  app.add_flag("--keep-noise", a.keep_noise, "LAS: points of the noise classes 7 and 18 count too");
-  app.add_option("--classes", a.classes, "LAS: only points of these classes count (2 is ground)")
-      ->type_name("N,...")
-      ->delimiter(',');
-  cmap::add_common_options(app, a.common, "no table and no warnings");
-  cmap::refuse_empty(app, {"--output", "--output-cloud", "--json", "--initial", "--times"});
+void add_method_options(cmap::CommandLine& line, Arguments& a) {
+  constexpr double kLeast = 1e-9, kMost = 1e9;
+  line.add("--initial", a.initial, "FILE", "4x4 matrix T_dst_src to start from [identity]").not_empty();
+  line.add("--voxel", a.voxel_m, "M", "the source is thinned to this, the target to half [size of DST / 400]")
+      .between(kLeast, kMost);
+  line.add("--max-distance", a.max_distance_m, "M", "farther pairs are no matches [10 voxels]").between(kLeast, kMost);
+  line.add_flag("--scale", a.scale, "estimate the scale too, where the method leaves the choice");
+  line.add("--tau", a.tau_m, "M", "threshold of tanksandtemples").between(kLeast, kMost);
+  line.add_choice("--fit", a.fit, cmap::trajectory_fit_names(), "NAME",
+                  "of trajectories: first-frame, se3, sim3 [sim3]");
+  line.add("--max-gap", a.max_gap_s, "S", "poses farther apart are not interpolated between [0.15]")
+      .between(kLeast, kMost);
+  line.add("--times", a.times, "FILE", "times of poses that have none (KITTI), one number of seconds a line")
+      .not_empty();
 }
 
-/// Whether an option means something for the method; of those that no method of registration is, by name.
-bool is_used(std::string_view option, const std::string& method) {
-  const bool registers = std::ranges::count(cmap::registration_names(), method) > 0;
-  const bool of_tanks = method == "tanksandtemples", of_trajectories = method == "trajectory";
+void add_options(cmap::CommandLine& line, Arguments& a) {
+  line.add("SRC", a.source, "FILE", "map or trajectory to move").required();
+  line.add("DST", a.target, "FILE", "map or trajectory that stays").required();
+  line.add_choice("--method", a.method, method_names(), "NAME", "one of these [gicp]");
+  line.add("-o,--output", a.output, "FILE", "transform to write: 4x4 as text").not_empty();
+  line.add("--output-cloud", a.cloud, "FILE.ply", "SRC as moved onto DST, to write").not_empty();
+  line.add("--json", a.json, "FILE", "everything about the result, to write").not_empty();
+  add_method_options(line, a);
+  line.add_flag("--keep-noise", a.keep_noise, "LAS: points of the noise classes 7 and 18 count too");
+  line.add("--classes", a.classes, "N,...", "LAS: only points of these classes count (2 is ground)").with_commas();
+  cmap::add_common_options(line, a.common, "no table and no warnings");
+}
+
+/// Whether an option means something for the method; of those that not every method takes, by name.
+bool is_used(std::string_view option, const cmap::AlignMethod& method) {
+  const bool of_tanks = method.kind == AlignKind::kTanksAndTemples;
+  const bool of_trajectories = method.kind == AlignKind::kTrajectory;
   if (option == "--tau") return of_tanks;
   if (option == "--fit" || option == "--max-gap" || option == "--times") return of_trajectories;
   if (option == "--output-cloud" || option == "--keep-noise" || option == "--classes") return !of_trajectories;
-  if (!registers) return option == "--initial" && of_tanks;
-  const cmap::RegistrationMethod& how = cmap::registration_method(method);
-  if (option == "--initial") return how.needs_initial;
-  if (option == "--max-distance") return how.takes_max_distance;
-  if (option == "--scale") return how.scale == cmap::ScaleRule::kOnRequest;
+  if (option == "--initial") return needs_initial(method);
+  if (method.kind != AlignKind::kRegistration) return false;
+  if (option == "--max-distance") return method.registration->takes_max_distance;
+  if (option == "--scale") return method.registration->scale == cmap::ScaleRule::kOnRequest;
   return true;
 }
 
 /// Options that the method would ignore are refused: they do not do what their giver thinks.
-void refuse_unused(const CLI::App& app, const std::string& method) {
+void refuse_unused(const cmap::CommandLine& line, const cmap::AlignMethod& method) {
   for (const char* option : {"--initial", "--voxel", "--max-distance", "--scale", "--tau", "--fit", "--max-gap",
                              "--times", "--output-cloud", "--keep-noise", "--classes"}) {
-    if (app.get_option(option)->count() == 0 || is_used(option, method)) continue;
-    throw cmap::UsageError(fmt::format("{} has no meaning for --method {}", option, method));
+    if (!line.has(option) || is_used(option, method)) continue;
+    throw cmap::UsageError(
+        fmt::format("{} has no meaning for --method {}", option, name_of(method, cmap::align_method_names())));
   }
 }
 
@@ -130,8 +136,7 @@ Result align_trajectories(const Arguments& a) {
   const auto [source, target] = cmap::read_trajectory_pair(a.source, a.target, cmap::path_if_given(a.times));
   Result result;
   try {
-    const cmap::TrajectoryFit fit = cmap::trajectory_fit_from_name(a.fit);
-    result.alignment = cmap::align_trajectories(source.poses, target.poses, fit, a.max_gap_s);
+    result.alignment = cmap::align_trajectories(source.poses, target.poses, a.fit, a.max_gap_s);
   } catch (const cmap::UnsupportedError&) {  // what was said of the inputs may be why
     if (!a.common.quiet) cmap::print_warnings(source.warnings), cmap::print_warnings(target.warnings);
     throw;
@@ -168,10 +173,10 @@ Result align_maps(const Arguments& a) {
   options.with_scale = a.scale;
   const auto [source, target] = cmap::read_both(a.source, a.target, {.keep_noise = a.keep_noise, .classes = a.classes});
   Result result;
-  if (a.method == "tanksandtemples") {
+  if (a.method.kind == AlignKind::kTanksAndTemples) {
     result = run_tanks_and_temples(a, source.cloud, target.cloud, options.T_initial, warnings);
   } else {
-    result.alignment = cmap::align(source.cloud, target.cloud, cmap::registration_method(a.method), options);
+    result.alignment = cmap::align(source.cloud, target.cloud, *a.method.registration, options);
     add_warnings(warnings, result.alignment);
     result.json = cmap::alignment_json(result.alignment);
   }
@@ -207,22 +212,21 @@ void deliver(const Arguments& a, const Result& result) {
   files.commit();
 }
 
-cmap::ExitCode run(const CLI::App& app, const Arguments& a) {
+cmap::ExitCode run(const cmap::CommandLine& line, const Arguments& a) {
   const cmap::ExecutionScope scope({.threads = a.common.threads});
-  refuse_unused(app, a.method);
+  refuse_unused(line, a.method);
   cmap::refuse_overwriting({a.source, a.target, a.initial, a.times}, a.outputs());
   for (const std::string& output : a.outputs()) cmap::require_writable(output);
   cmap::check_extension(a.cloud, {".ply", ".PLY"}, "the moved map is written as PLY");
-  deliver(a, a.method == "trajectory" ? align_trajectories(a) : align_maps(a));
+  deliver(a, a.method.kind == AlignKind::kTrajectory ? align_trajectories(a) : align_maps(a));
   return cmap::ExitCode::kDone;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(description(), "cmap_align");
-  app.footer(std::string(kExample) + cmap::kDash);
+  cmap::CommandLine line("cmap_align", description(), std::string(kExample) + cmap::kDash);
   Arguments arguments;
-  add_options(app, arguments);
-  return cmap::run_program(app, argc, argv, [&] { return run(app, arguments); });
+  add_options(line, arguments);
+  return cmap::run_program(line, argc, argv, [&] { return run(line, arguments); });
 }

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
 
 #include "cmap/board/comparison.hpp"
 #include "cmap/core/error.hpp"
 #include "cmap/io/output_file.hpp"
+#include "command_line.hpp"
 #include "files.hpp"
 #include "program.hpp"
 
@@ -39,35 +39,33 @@ constexpr const char* kExample =
 
 struct Arguments {
   std::vector<std::string> reports;
-  std::string format = "text", baseline, output, figure;
+  ComparisonFormat format = ComparisonFormat::kText;
+  std::string baseline, output, figure;
   std::vector<std::string> metrics, names;
 };
 
-const std::map<std::string, ComparisonFormat> kFormats{{"text", ComparisonFormat::kText},
-                                                       {"markdown", ComparisonFormat::kMarkdown},
-                                                       {"csv", ComparisonFormat::kCsv},
-                                                       {"latex", ComparisonFormat::kLatex},
-                                                       {"html", ComparisonFormat::kHtml}};
+const cmap::EnumNames<ComparisonFormat> kFormats{{ComparisonFormat::kText, "text"},
+                                                 {ComparisonFormat::kMarkdown, "markdown"},
+                                                 {ComparisonFormat::kCsv, "csv"},
+                                                 {ComparisonFormat::kLatex, "latex"},
+                                                 {ComparisonFormat::kHtml, "html"}};
 
-void add_options(CLI::App& app, Arguments& a) {
-  app.add_option("REPORT", a.reports, "reports of cmap_eval")->required()->type_name("A.json B.json ...");
-  app.add_option("--format", a.format, "text, markdown, csv, latex or html [text]")
-      ->type_name("FORMAT")
-      ->check(cmap::one_of({"text", "markdown", "csv", "latex", "html"}));
-  app.add_option("--metrics", a.metrics, "groups, metric ids or symbols [all in the reports]")
-      ->type_name("LIST")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  app.add_option("--baseline", a.baseline,
-                 "also say by how much the others are better (+) or worse (-) than this report")
-      ->type_name("A.json");
-  app.add_option("--names", a.names, "headings of the columns [file names]")
-      ->type_name("A,B,...")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  app.add_option("-o,--output", a.output, "write here in place of standard output")->type_name("FILE");
-  app.add_option("--figure", a.figure, "chart of every metric, and curves: .svg, .png, .jpg, .tif")->type_name("FILE");
-  cmap::refuse_empty(app, {"--baseline", "--figure", "--metrics", "--names", "--output"});
+void add_options(cmap::CommandLine& line, Arguments& a) {
+  line.add("REPORT", a.reports, "A.json B.json ...", "reports of cmap_eval").required();
+  line.add_choice("--format", a.format, kFormats, "FORMAT", "text, markdown, csv, latex or html [text]");
+  line.add("--metrics", a.metrics, "LIST", "groups, metric ids or symbols [all in the reports]")
+      .with_commas()
+      .one_at_a_time()
+      .not_empty();
+  line.add("--baseline", a.baseline, "A.json",
+           "also say by how much the others are better (+) or worse (-) than this report")
+      .not_empty();
+  line.add("--names", a.names, "A,B,...", "headings of the columns [file names]")
+      .with_commas()
+      .one_at_a_time()
+      .not_empty();
+  line.add("-o,--output", a.output, "FILE", "write here in place of standard output").not_empty();
+  line.add("--figure", a.figure, "FILE", "chart of every metric, and curves: .svg, .png, .jpg, .tif").not_empty();
 }
 
 /// Index of the baseline among the reports, which it joins as the first unless it is one of them.
@@ -93,7 +91,7 @@ ExitCode run(Arguments arguments) {
   for (const std::string& note : cmap::version_notes(reports, options)) {
     fmt::print(stderr, "cmap_compare: warning: {}\n", note);
   }
-  const std::string text = cmap::format_comparison(reports, options, kFormats.at(arguments.format));
+  const std::string text = cmap::format_comparison(reports, options, arguments.format);
   cmap::OutputFiles files;
   files.add(arguments.figure,
             [&](cmap::OutputFile& file) { cmap::write_comparison_figure(reports, options, arguments.figure, file); });
@@ -106,9 +104,8 @@ ExitCode run(Arguments arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(kDescription, "cmap_compare");
-  app.footer(std::string(kExample) + cmap::kDash);
+  cmap::CommandLine line("cmap_compare", kDescription, std::string(kExample) + cmap::kDash);
   Arguments arguments;
-  add_options(app, arguments);
-  return cmap::run_program(app, argc, argv, [&] { return run(arguments); });
+  add_options(line, arguments);
+  return cmap::run_program(line, argc, argv, [&] { return run(arguments); });
 }

@@ -8,9 +8,9 @@
 #include <optional>
 #include <utility>
 
-#include "cmap/align/align.hpp"
 #include "cmap/align/trajectory.hpp"
 #include "cmap/core/execution.hpp"
+#include "cmap/eval/configuration.hpp"
 #include "cmap/eval/map_error.hpp"
 #include "cmap/eval/map_evaluation.hpp"
 #include "cmap/eval/point_errors.hpp"
@@ -21,7 +21,7 @@
 #include "cmap/report/figure_module.hpp"
 #include "cmap/report/html_report.hpp"
 #include "cmap/report/report.hpp"
-#include "evaluation_arguments.hpp"
+#include "command_line.hpp"
 #include "files.hpp"
 #include "program.hpp"
 #include "run_clock.hpp"
@@ -43,71 +43,75 @@ constexpr const char* kExample =
     "Exit codes: 0 done; 1 a --require did not hold; 2 wrong usage or configuration; 3 an input is missing, malformed\n"
     "or without a finite point; 4 the inputs do not support what was asked; 70 internal error.";
 
+enum class Format { kTable, kJson };
+
 /// The command line as given; of one map, `estimate` is empty.
 struct Arguments {
   std::string reference, estimate;
-  std::string output, html, figure, format = "table", config, preset, transform, initial;
+  std::string output, html, figure, config, preset, transform, initial;
+  Format format = Format::kTable;
   std::string reference_trajectory, estimate_trajectory, times, sensor;
   std::string estimate_errors, reference_errors;
   std::vector<std::string> requirements;
-  cmap::EvaluationArguments evaluation;
+  cmap::OptionTexts metrics;
   cmap::CommonArguments common;
 
   std::vector<std::string> outputs() const { return {output, html, figure, estimate_errors, reference_errors}; }
 };
 
-void add_options(CLI::App& app, Arguments& a) {
-  app.add_option("REF", a.reference, "reference map; without EST, the map to evaluate by itself; - is standard input")
-      ->required()
-      ->type_name("FILE");
-  app.add_option("EST", a.estimate, "estimated map")->type_name("FILE");
-  app.add_option("-o,--output", a.output, "write the JSON report here; - is standard output, then without the table")
-      ->type_name("FILE");
-  app.add_option("--html", a.html, "page with everything: tables, curves, both maps in 3-D; implies --lcr-curve")
-      ->type_name("FILE.html");
-  app.add_option("--figure", a.figure, "picture of both maps, local color recall and color distance: .png, .jpg, .tif")
-      ->type_name("FILE");
-  app.add_option("--format", a.format, "what to print: table or json [table]")
-      ->type_name("FORMAT")
-      ->check(cmap::one_of({"table", "json"}));
-  app.add_option("--config", a.config, "JSON file of the options under Metrics; the command line wins")
-      ->type_name("FILE");
-  app.add_option("--preset", a.preset, "shipped configuration: paper, indoor, outdoor, aerial, mapeval")
-      ->type_name("NAME");
-  app.add_option("--transform", a.transform, "4x4 matrix T_ref_est that moves the estimate into the reference frame")
-      ->type_name("FILE");
-  app.add_option("--initial", a.initial, "the same as the place where --align begins")->type_name("FILE");
-  app.add_option("--ref-trajectory", a.reference_trajectory,
-                 "the reference's poses (TUM, EuRoC, KITTI, or named columns), for --align trajectory")
-      ->type_name("FILE");
-  app.add_option("--est-trajectory", a.estimate_trajectory, "the estimate's poses, at the same times")
-      ->type_name("FILE");
-  app.add_option("--times", a.times, "times of poses that have none (KITTI), one number of seconds a line")
-      ->type_name("FILE");
-  app.add_option("--observed-from", a.sensor,
-                 "where the estimate's sensor was: poses, or a capture with its scans and lio.tum, in the estimate's "
-                 "frame; means --observed sensor")
-      ->type_name("FILE|DIR");
-  app.add_option("--require", a.requirements, "exit 1 unless it holds: LCR>=20%, accuracy@0.1<=0.06; repeatable")
-      ->type_name("EXPR")
-      ->expected(1)
-      ->take_all();
-  app.add_option("--export-errors", a.estimate_errors, "PLY of the estimate with its distance and color errors")
-      ->type_name("FILE.ply");
-  app.add_option("--export-reference-errors", a.reference_errors, "the same for the reference, with LCR hits")
-      ->type_name("FILE.ply");
-  cmap::add_common_options(app, a.common, "no table, no progress");
-  cmap::refuse_empty(app, {"REF", "EST", "--output", "--html", "--figure", "--config", "--preset", "--transform",
-                           "--initial", "--ref-trajectory", "--est-trajectory", "--times", "--observed-from",
-                           "--export-errors", "--export-reference-errors"});
-  a.evaluation.add_to(app, [](std::string_view) { return true; });
+void add_file_options(cmap::CommandLine& line, Arguments& a) {
+  line.add("REF", a.reference, "FILE", "reference map; without EST, the map to evaluate by itself; - is standard input")
+      .required()
+      .not_empty();
+  line.add("EST", a.estimate, "FILE", "estimated map").not_empty();
+  line.add("-o,--output", a.output, "FILE", "write the JSON report here; - is standard output, then without the table")
+      .not_empty();
+  line.add("--html", a.html, "FILE.html", "page with everything: tables, curves, both maps in 3-D; implies --lcr-curve")
+      .not_empty();
+  line.add("--figure", a.figure, "FILE",
+           "picture of both maps, local color recall and color distance: .png, .jpg, .tif")
+      .not_empty();
+  line.add_choice("--format", a.format, {{Format::kTable, "table"}, {Format::kJson, "json"}}, "FORMAT",
+                  "what to print: table or json [table]");
+  line.add("--config", a.config, "FILE", "JSON file of the options under Metrics; the command line wins").not_empty();
+  line.add("--preset", a.preset, "NAME", "shipped configuration: paper, indoor, outdoor, aerial, mapeval").not_empty();
+}
+
+void add_alignment_options(cmap::CommandLine& line, Arguments& a) {
+  line.add("--transform", a.transform, "FILE", "4x4 matrix T_ref_est that moves the estimate into the reference frame")
+      .not_empty();
+  line.add("--initial", a.initial, "FILE", "the same as the place where --align begins").not_empty();
+  line.add("--ref-trajectory", a.reference_trajectory, "FILE",
+           "the reference's poses (TUM, EuRoC, KITTI, or named columns), for --align trajectory")
+      .not_empty();
+  line.add("--est-trajectory", a.estimate_trajectory, "FILE", "the estimate's poses, at the same times").not_empty();
+  line.add("--times", a.times, "FILE", "times of poses that have none (KITTI), one number of seconds a line")
+      .not_empty();
+  line.add("--observed-from", a.sensor, "FILE|DIR",
+           "where the estimate's sensor was: poses, or a capture with its scans and lio.tum, in the estimate's "
+           "frame; means --observed sensor")
+      .not_empty();
+}
+
+void add_options(cmap::CommandLine& line, Arguments& a) {
+  add_file_options(line, a);
+  add_alignment_options(line, a);
+  line.add("--require", a.requirements, "EXPR", "exit 1 unless it holds: LCR>=20%, accuracy@0.1<=0.06; repeatable")
+      .repeatable();
+  line.add("--export-errors", a.estimate_errors, "FILE.ply", "PLY of the estimate with its distance and color errors")
+      .not_empty();
+  line.add("--export-reference-errors", a.reference_errors, "FILE.ply", "the same for the reference, with LCR hits")
+      .not_empty();
+  cmap::add_common_options(line, a.common, "no table, no progress");
+  cmap::EvaluationOptions defaults;
+  for (const cmap::OptionField& field : option_fields(defaults)) line.add_option(field, a.metrics);
 }
 
 cmap::EvaluationOptions resolve_options(const Arguments& arguments) {
   cmap::EvaluationOptions options;
   if (!arguments.preset.empty()) cmap::apply_preset(options, arguments.preset);
   if (!arguments.config.empty()) cmap::apply_config_file(options, arguments.config);
-  arguments.evaluation.apply_to(options);
+  cmap::set_given(option_fields(options), arguments.metrics);
   return options;
 }
 
@@ -170,16 +174,10 @@ void read_trajectories(const Arguments& a, cmap::ProtocolInputs& inputs) {
   inputs.estimate_trajectory = std::move(estimate.poses);
 }
 
-/// Whether the alignment starts from a guess.
-bool begins_somewhere(const std::string& align) {
-  if (align == "none" || align == "trajectory") return false;
-  return align == "tanksandtemples" || cmap::registration_method(align).needs_initial;
-}
-
 /// Files that only another option would read are mistakes.
 cmap::ProtocolInputs protocol_inputs(const Arguments& a, const cmap::EvaluationOptions& options) {
-  const bool by_trajectories = options.align == "trajectory";
-  if (!a.initial.empty() && (!begins_somewhere(options.align) || !a.transform.empty())) {
+  const bool by_trajectories = options.align.kind == cmap::AlignKind::kTrajectory;
+  if (!a.initial.empty() && (!needs_initial(options.align) || !a.transform.empty())) {
     throw cmap::UsageError("--initial needs an --align that begins somewhere, and no --transform");
   }
   if (by_trajectories == (a.reference_trajectory.empty() || a.estimate_trajectory.empty()) ||
@@ -235,7 +233,7 @@ void deliver(const Arguments& arguments, const Evaluated& evaluation, const nloh
   files.add(arguments.html, [&](cmap::OutputFile& file) { cmap::write_html_report(report, evaluation, file); });
   files.add(arguments.output, [&](cmap::OutputFile& file) { file.write(report_text); });
   if (!arguments.common.quiet && !cmap::any_to_standard_output(arguments.outputs())) {
-    cmap::print(arguments.format == "json" ? report_text : cmap::format_table(report));
+    cmap::print(arguments.format == Format::kJson ? report_text : cmap::format_table(report));
   }
   files.commit();
 }
@@ -306,9 +304,8 @@ ExitCode run(const Arguments& arguments, const std::string& command) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(kDescription, "cmap_eval");
-  app.footer(std::string(kExample) + cmap::kDash);
+  cmap::CommandLine line("cmap_eval", kDescription, std::string(kExample) + cmap::kDash);
   Arguments arguments;
-  add_options(app, arguments);
-  return cmap::run_program(app, argc, argv, [&] { return run(arguments, cmap::shell_command({argv, argv + argc})); });
+  add_options(line, arguments);
+  return cmap::run_program(line, argc, argv, [&] { return run(arguments, cmap::shell_command({argv, argv + argc})); });
 }

@@ -8,6 +8,7 @@
 #include "cmap/board/leaderboard.hpp"
 #include "cmap/core/execution.hpp"
 #include "cmap/core/progress.hpp"
+#include "command_line.hpp"
 #include "files.hpp"
 #include "program.hpp"
 
@@ -42,14 +43,11 @@ struct Arguments {
   cmap::CommonArguments common;
 };
 
-void add_options(CLI::App& app, Arguments& a) {
-  app.add_option("MANIFEST", a.manifest, "sequences, methods and their maps")->required()->type_name("FILE.json");
-  app.add_option("--data-root", a.data_root, "folder that the manifest's paths start from [.]")->type_name("DIR");
-  app.add_option("-o,--output", a.output, "folder to write to; its results are used again")
-      ->required()
-      ->type_name("DIR");
-  cmap::add_common_options(app, a.common, "no tables, no progress");
-  cmap::refuse_empty(app, {"--data-root", "--output"});
+void add_options(cmap::CommandLine& line, Arguments& a) {
+  line.add("MANIFEST", a.manifest, "FILE.json", "sequences, methods and their maps").required();
+  line.add("--data-root", a.data_root, "DIR", "folder that the manifest's paths start from [.]").not_empty();
+  line.add("-o,--output", a.output, "DIR", "folder to write to; its results are used again").required().not_empty();
+  cmap::add_common_options(line, a.common, "no tables, no progress");
 }
 
 ExitCode run(const Arguments& arguments) {
@@ -77,9 +75,8 @@ ExitCode run(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(kDescription, "cmap_leaderboard");
-  app.footer(kExample);
+  cmap::CommandLine line("cmap_leaderboard", kDescription, kExample);
   Arguments arguments;
-  add_options(app, arguments);
-  return cmap::run_program(app, argc, argv, [&] { return run(arguments); });
+  add_options(line, arguments);
+  return cmap::run_program(line, argc, argv, [&] { return run(arguments); });
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cmap/eval/protocol.hpp"
 #include "cmap/io/output_folder.hpp"
@@ -15,6 +16,7 @@
 #ifdef CMAP_WITH_RENDER
 #include "cmap/render/reconstruction_figure.hpp"
 #endif
+#include "command_line.hpp"
 #include "files.hpp"
 #include "program.hpp"
 
@@ -43,41 +45,46 @@ constexpr const char* kExample =
     "be placed; 70 internal error.";
 
 struct Arguments {
-  std::string capture, output, preset = "default", config, stop_after = "fusion", reference, figure;
+  std::string capture, output, preset = "default", config, reference, figure;
   std::vector<std::string> settings;
-  std::string registration;
-  int only_session = -1;
+  std::optional<cmap::RegistrationMethod> registration;
+  cmap::Stage stop_after = cmap::Stage::kFusion;
+  std::optional<int> only_session;
   bool check = false, resume = false, session_maps = false, print_options = false;
   cmap::CommonArguments common;
 };
 
-void add_options(CLI::App& app, Arguments& a) {
-  app.add_option("CAPTURE", a.capture, "folder of a capture")->type_name("DIR");
-  app.add_option("-o,--output", a.output, "folder for the results; made if need be")->type_name("DIR");
-  app.add_flag("--check", a.check, "list all that is missing or odd in CAPTURE at once; writes nothing");
-  app.add_option("--evaluate", a.reference, "reference map: also evaluation.json and evaluation.png")->type_name("REF");
-  app.add_option("--figure", a.figure, "the sessions from above after each stage: .png, .jpg, .tif")->type_name("FILE");
-  app.add_option("--registration", a.registration, "prefusion (none), normal, paper or robust [robust]")
-      ->type_name("NAME")
-      ->check(cmap::one_of({"prefusion", "normal", "paper", "robust"}));
-  app.add_option("--preset", a.preset, "default, or paper: the method as printed [default]")
-      ->type_name("NAME")
-      ->check(cmap::one_of({"default", "paper"}));
-  app.add_option("--config", a.config, "JSON file of options, see --print-options")->type_name("FILE");
-  app.add_option("--set", a.settings, "one option by its name; may be repeated")
-      ->type_name("NAME=VALUE")
-      ->allow_extra_args(false);
-  app.add_flag("--print-options", a.print_options, "all options as JSON, and nothing else");
-  app.add_option("--stop-after", a.stop_after, "prefusion, registration, posegraph or fusion [fusion]")
-      ->type_name("STAGE")
-      ->check(cmap::one_of({"prefusion", "registration", "posegraph", "fusion"}));
-  app.add_option("--only-session", a.only_session, "reconstruct this session alone")
-      ->type_name("K")
-      ->check(CLI::Range(0, 1'000'000).description(""));
-  app.add_flag("--resume", a.resume, "go on from the stages that an earlier run of the same inputs left in DIR");
-  app.add_flag("--session-maps", a.session_maps, "also each session's own map, DIR/sessions/NAME.ply");
-  cmap::add_common_options(app, a.common, "no table and no progress");
-  cmap::refuse_empty(app, {"--output", "--evaluate", "--figure", "--config", "--set"});
+/// The names that the library has for stages.
+cmap::EnumNames<cmap::Stage> named_stages() {
+  using cmap::Stage;
+  cmap::EnumNames<Stage> names;
+  for (const Stage stage : {Stage::kPrefusion, Stage::kRegistration, Stage::kPoseGraph, Stage::kFusion}) {
+    names.emplace_back(stage, cmap::stage_name(stage));
+  }
+  return names;
+}
+
+void add_options(cmap::CommandLine& line, Arguments& a) {
+  const cmap::EnumNames<cmap::RegistrationMethod>& methods = cmap::registration_method_names();
+  line.add("CAPTURE", a.capture, "DIR", "folder of a capture");
+  line.add("-o,--output", a.output, "DIR", "folder for the results; made if need be").not_empty();
+  line.add_flag("--check", a.check, "list all that is missing or odd in CAPTURE at once; writes nothing");
+  line.add("--evaluate", a.reference, "REF", "reference map: also evaluation.json and evaluation.png").not_empty();
+  line.add("--figure", a.figure, "FILE", "the sessions from above after each stage: .png, .jpg, .tif").not_empty();
+  line.add_choice("--registration", a.registration,
+                  cmap::EnumNames<std::optional<cmap::RegistrationMethod>>(methods.begin(), methods.end()), "NAME",
+                  "prefusion (none), normal, paper or robust [robust]");
+  line.add_word("--preset", a.preset, {"default", "paper"}, "NAME",
+                "default, or paper: the method as printed [default]");
+  line.add("--config", a.config, "FILE", "JSON file of options, see --print-options").not_empty();
+  line.add("--set", a.settings, "NAME=VALUE", "one option by its name; may be repeated").one_at_a_time().not_empty();
+  line.add_flag("--print-options", a.print_options, "all options as JSON, and nothing else");
+  line.add_choice("--stop-after", a.stop_after, named_stages(), "STAGE",
+                  "prefusion, registration, posegraph or fusion [fusion]");
+  line.add("--only-session", a.only_session, "K", "reconstruct this session alone").between(0, 1'000'000);
+  line.add_flag("--resume", a.resume, "go on from the stages that an earlier run of the same inputs left in DIR");
+  line.add_flag("--session-maps", a.session_maps, "also each session's own map, DIR/sessions/NAME.ply");
+  cmap::add_common_options(line, a.common, "no table and no progress");
 }
 
 cmap::ReconstructionOptions resolve_options(const Arguments& a) {
@@ -85,7 +92,7 @@ cmap::ReconstructionOptions resolve_options(const Arguments& a) {
   cmap::apply_reconstruction_preset(options, a.preset);
   if (!a.config.empty()) cmap::apply_reconstruction_config_file(options, a.config);
   for (const std::string& setting : a.settings) cmap::set_reconstruction_option(options, setting);
-  if (!a.registration.empty()) cmap::set_reconstruction_option(options, "registration=" + a.registration);
+  if (a.registration) options.registration.method = *a.registration;
   return options;
 }
 
@@ -102,7 +109,7 @@ void evaluate_map(const Arguments& a, cmap::PointCloudFile reference, const std:
   files.add(folder / "evaluation.json", [&](cmap::OutputFile& file) { file.write(report.dump(2) + "\n"); });
   files.add(folder / "evaluation.png",
             [&](cmap::OutputFile& file) { cmap::FigureModule().write(evaluation, "evaluation.png", file); });
-  if (!a.common.quiet) cmap::print("\n" + cmap::format_table(report));
+  if (!a.common.quiet) cmap::print(fmt::format("\n{}", cmap::format_table(report)));
   files.commit();
 }
 
@@ -127,7 +134,7 @@ void write_figure(const cmap::Reconstruction&, const std::string&, cmap::OutputF
 void deliver(const Arguments& a, const cmap::Reconstruction& r, const cmap::ReconstructionOptions& options,
              const std::string& command, cmap::OutputFiles& files) {
   const fs::path folder(a.output);
-  if (a.stop_after == "fusion") {
+  if (a.stop_after == cmap::Stage::kFusion) {
     files.add(folder / "map.ply", [&](cmap::OutputFile& file) { cmap::write_ply(file, r.map); });
   }
   files.add(folder / "trajectory.tum", [&](cmap::OutputFile& file) { cmap::write_tum_trajectory(r.trajectory, file); });
@@ -171,7 +178,7 @@ void check_arguments(const Arguments& a) {
   for (const auto& [given, option] :
        {std::pair(!a.reference.empty(), "--evaluate"), std::pair(!a.figure.empty(), "--figure"),
         std::pair(a.session_maps, "--session-maps")}) {
-    if (given && a.stop_after != "fusion") {
+    if (given && a.stop_after != cmap::Stage::kFusion) {
       throw cmap::UsageError(fmt::format("{} needs the whole run: not with --stop-after", option));
     }
   }
@@ -214,9 +221,9 @@ ExitCode check(const Arguments& a, const cmap::ReconstructionOptions& options) {
   if (a.capture.empty()) throw cmap::UsageError("CAPTURE is required");
   const cmap::CaptureCheck found = [&] {
     cmap::ProgressBar progress(!a.common.quiet);
-    return cmap::check_capture(
-        a.capture, options, cmap::stage_from_name(a.stop_after),
-        {.progress = [&](std::string_view stage, double done) { progress.update(stage, done); }});
+    return cmap::check_capture(a.capture, options, a.stop_after, {.progress = [&](std::string_view stage, double done) {
+                                 progress.update(stage, done);
+                               }});
   }();
   std::string text;
   for (const std::string& fault : found.faults) text += fmt::format("fault: {}\n", fault);
@@ -229,7 +236,7 @@ ExitCode check(const Arguments& a, const cmap::ReconstructionOptions& options) {
   return found.faults.empty() ? ExitCode::kDone : ExitCode::kInput;
 }
 
-ExitCode run(const CLI::App& app, const Arguments& a, const std::string& command) {
+ExitCode run(const Arguments& a, const std::string& command) {
   const cmap::ExecutionScope scope({.threads = a.common.threads});
   const cmap::ReconstructionOptions options = resolve_options(a);
   if (a.print_options) {
@@ -240,14 +247,13 @@ ExitCode run(const CLI::App& app, const Arguments& a, const std::string& command
   check_arguments(a);
   std::optional<cmap::PointCloudFile> reference;
   if (!a.reference.empty()) reference = cmap::read_point_cloud(a.reference, {.sha256 = true});
-  const cmap::Stage last = cmap::stage_from_name(a.stop_after);
-  const cmap::Capture capture = cmap::open_capture(a.capture, cmap::parts_needed(options, last));
+  const cmap::Capture capture = cmap::open_capture(a.capture, cmap::parts_needed(options, a.stop_after));
   const cmap::FolderLock lock = make_output_folders(a, capture);
   cmap::ProgressBar progress(!a.common.quiet);
   cmap::OutputFiles files;
   cmap::ReconstructionRun how;
-  how.last = last;
-  if (app.get_option("--only-session")->count() > 0) how.only_session = static_cast<std::size_t>(a.only_session);
+  how.last = a.stop_after;
+  if (a.only_session) how.only_session = static_cast<std::size_t>(*a.only_session);
   how.stages = fs::path(a.output) / "stages";
   how.resume = a.resume;
   how.execution.progress = [&](std::string_view stage, double done) { progress.update(stage, done); };
@@ -269,11 +275,8 @@ ExitCode run(const CLI::App& app, const Arguments& a, const std::string& command
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(kDescription, "cmap_recon");
-  app.footer(kExample);
+  cmap::CommandLine line("cmap_recon", kDescription, kExample);
   Arguments arguments;
-  add_options(app, arguments);
-  return cmap::run_program(app, argc, argv, [&] {
-    return run(app, arguments, cmap::shell_command({argv, argv + argc}));
-  });
+  add_options(line, arguments);
+  return cmap::run_program(line, argc, argv, [&] { return run(arguments, cmap::shell_command({argv, argv + argc})); });
 }

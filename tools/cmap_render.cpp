@@ -14,7 +14,7 @@
 #include "cmap/render/point_text.hpp"
 #include "cmap/render/standard_figure.hpp"
 #include "cmap/render/turntable.hpp"
-#include "evaluation_arguments.hpp"
+#include "command_line.hpp"
 #include "files.hpp"
 #include "program.hpp"
 
@@ -44,50 +44,53 @@ struct Arguments {
   double point_size = 1.0;
   int frames = 120;
   bool orthographic = false, logarithmic = false, interactive = false;
-  cmap::EvaluationArguments evaluation;
+  cmap::OptionTexts metrics;
   cmap::CommonArguments common;
 };
 
-void add_options(CLI::App& app, Arguments& a) {
-  app.add_option("MAP", a.map, "map to draw; with EST, the reference")->required()->type_name("FILE");
-  app.add_option("EST", a.estimate, "estimated map")->type_name("FILE");
-  app.add_option("-o,--output", a.output, "picture to write: .png, .jpg or .tif")->type_name("FILE");
-  app.add_flag("--interactive", a.interactive, "a window to turn, zoom and pick points in; needs an X display");
-  app.add_option("--panels", a.panels, "layers side by side [reference,estimate,lcr,color-distance]")
-      ->type_name("LIST")
-      ->delimiter(',')
-      ->expected(1, 9);
-  app.add_option("--camera", a.camera,
-                 "top, oblique, front, side, fit, or a file: ours or one of Open3D, see below [oblique]")
-      ->type_name("VIEW");
-  app.add_flag("--orthographic", a.orthographic, "parallel projection");
-  app.add_option("--size", a.size, "of the picture in pixels [1600x1000]")->type_name("WxH");
-  app.add_option("--range", a.range, "ends of the color scale of heat maps, for pictures that are to be compared")
-      ->type_name("LOW,HIGH")
-      ->delimiter(',')
-      ->expected(2)
-      ->option_text("LOW,HIGH");
-  app.add_flag("--log", a.logarithmic, "logarithmic color scale");
-  app.add_option("--color-map", a.color_map, "viridis, cividis, inferno or turbo")->type_name("NAME");
-  app.add_option("--background", a.background, "white, black or transparent [white]")->type_name("NAME");
-  app.add_option("--point-size", a.point_size, "factor on the size of points [1]")
-      ->type_name("FACTOR")
-      ->check(CLI::Range(0.01, 100.0).description(""));
-  app.add_option("--renderer", a.renderer, "splat, on the processor, or gl, by OpenGL: the same picture [splat]")
-      ->type_name("NAME");
-  app.add_option("--transform", a.transform, "4x4 matrix T_ref_est that moves the estimate into the reference frame")
-      ->type_name("FILE");
-  app.add_option("--turntable", a.turntable, "full turn around the map: .mp4, .gif, or a new folder of frames")
-      ->type_name("NAME");
-  app.add_option("--frames", a.frames, "of the turn, 24 a second [120]")
-      ->type_name("N")
-      ->check(CLI::Range(2, 10000).description(""));
-  cmap::add_common_options(app, a.common, "no progress, and not which device OpenGL draws by");
-  cmap::refuse_empty(app, {"--output", "--turntable", "--camera", "--color-map", "--renderer", "--transform"});
-  a.evaluation.add_to(app, [](std::string_view name) {
-    if (name == "keep-noise" || name == "classes") return true;
-    return name.starts_with("lcr-") ? name != "lcr-curve" : name.starts_with("ccs-") || name.starts_with("awd-");
-  });
+/// Whether a picture depends on an option of the evaluation.
+bool is_drawn(std::string_view option) {
+  if (option == "keep-noise" || option == "classes") return true;
+  return option.starts_with("lcr-") ? option != "lcr-curve" : option.starts_with("ccs-") || option.starts_with("awd-");
+}
+
+void add_drawing_options(cmap::CommandLine& line, Arguments& a) {
+  line.add("--panels", a.panels, "LIST", "layers side by side [reference,estimate,lcr,color-distance]")
+      .with_commas()
+      .values(1, 9);
+  line.add("--camera", a.camera, "VIEW",
+           "top, oblique, front, side, fit, or a file: ours or one of Open3D, see below [oblique]")
+      .not_empty();
+  line.add_flag("--orthographic", a.orthographic, "parallel projection");
+  line.add("--size", a.size, "WxH", "of the picture in pixels [1600x1000]");
+  line.add("--range", a.range, "LOW,HIGH", "ends of the color scale of heat maps, for pictures that are to be compared")
+      .with_commas()
+      .values(2, 2)
+      .shown_as("LOW,HIGH");
+  line.add_flag("--log", a.logarithmic, "logarithmic color scale");
+  line.add("--color-map", a.color_map, "NAME", "viridis, cividis, inferno or turbo").not_empty();
+  line.add("--background", a.background, "NAME", "white, black or transparent [white]");
+  line.add("--point-size", a.point_size, "FACTOR", "factor on the size of points [1]").between(0.01, 100.0);
+  line.add("--renderer", a.renderer, "NAME", "splat, on the processor, or gl, by OpenGL: the same picture [splat]")
+      .not_empty();
+}
+
+void add_options(cmap::CommandLine& line, Arguments& a) {
+  line.add("MAP", a.map, "FILE", "map to draw; with EST, the reference").required();
+  line.add("EST", a.estimate, "FILE", "estimated map");
+  line.add("-o,--output", a.output, "FILE", "picture to write: .png, .jpg or .tif").not_empty();
+  line.add_flag("--interactive", a.interactive, "a window to turn, zoom and pick points in; needs an X display");
+  add_drawing_options(line, a);
+  line.add("--transform", a.transform, "FILE", "4x4 matrix T_ref_est that moves the estimate into the reference frame")
+      .not_empty();
+  line.add("--turntable", a.turntable, "NAME", "full turn around the map: .mp4, .gif, or a new folder of frames")
+      .not_empty();
+  line.add("--frames", a.frames, "N", "of the turn, 24 a second [120]").between(2, 10000);
+  cmap::add_common_options(line, a.common, "no progress, and not which device OpenGL draws by");
+  cmap::EvaluationOptions defaults;
+  for (const cmap::OptionField& field : option_fields(defaults)) {
+    if (is_drawn(field.name)) line.add_option(field, a.metrics);
+  }
 }
 
 cmap::FigureOptions figure_options(const Arguments& a) {
@@ -146,7 +149,7 @@ struct Plan {
   explicit Plan(const Arguments& a) : options(figure_options(a)), layer(layer_options(a)), camera(camera_choice(a)) {
     cmap::refuse_overwriting({a.map, a.estimate, a.camera, a.transform}, {a.output, a.turntable});
     check_outputs(a);
-    a.evaluation.apply_to(evaluation);
+    cmap::set_given(option_fields(evaluation), a.metrics);
     for (const std::string& panel : a.panels) cmap::check_layer_name(panel);
     (void)cmap::panel_aspect(std::max<std::size_t>(1, a.panels.size()), options);
   }
@@ -251,9 +254,8 @@ cmap::ExitCode run(const Arguments& a) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(kDescription, "cmap_render");
-  app.footer(std::string(kExample) + cmap::kDash);
+  cmap::CommandLine line("cmap_render", kDescription, std::string(kExample) + cmap::kDash);
   Arguments arguments;
-  add_options(app, arguments);
-  return cmap::run_program(app, argc, argv, [&] { return run(arguments); });
+  add_options(line, arguments);
+  return cmap::run_program(line, argc, argv, [&] { return run(arguments); });
 }

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cmap/core/execution.hpp"
 #include "cmap/core/progress.hpp"
 #include "cmap/sim/capture_simulation.hpp"
+#include "command_line.hpp"
 #include "program.hpp"
 
 namespace {
@@ -26,27 +28,25 @@ constexpr const char* kExample =
 
 struct Arguments {
   std::string preset, output;
-  int seed = 0;
+  std::optional<int> seed;
   std::vector<std::string> assignments;
   bool print_options = false;
   cmap::CommonArguments common;
 };
 
-void add_options(CLI::App& app, Arguments& a) {
-  app.add_option("PRESET", a.preset, "name, or file of options")->required()->type_name("NAME|FILE");
-  app.add_option("-o,--output", a.output, "folder to make")->type_name("DIR");
-  app.add_option("--seed", a.seed, "of noise and sway; the scene has its own, scene.seed [the preset's]")
-      ->type_name("N")
-      ->check(CLI::Range(0, 2147483647).description(""));
-  app.add_option("--set", a.assignments, "an option by its name; may be repeated")
-      ->type_name("SECTION.FIELD=VALUE")
-      ->allow_extra_args(false);
-  app.add_flag("--print-options", a.print_options, "all options as JSON, and nothing else");
-  cmap::add_common_options(app, a.common, "no progress");
-  cmap::refuse_empty(app, {"PRESET", "--output", "--set"});
+void add_options(cmap::CommandLine& line, Arguments& a) {
+  line.add("PRESET", a.preset, "NAME|FILE", "name, or file of options").required().not_empty();
+  line.add("-o,--output", a.output, "DIR", "folder to make").not_empty();
+  line.add("--seed", a.seed, "N", "of noise and sway; the scene has its own, scene.seed [the preset's]")
+      .between(0, 2147483647);
+  line.add("--set", a.assignments, "SECTION.FIELD=VALUE", "an option by its name; may be repeated")
+      .one_at_a_time()
+      .not_empty();
+  line.add_flag("--print-options", a.print_options, "all options as JSON, and nothing else");
+  cmap::add_common_options(line, a.common, "no progress");
 }
 
-cmap::CaptureOptions options_of(const CLI::App& app, const Arguments& a) {
+cmap::CaptureOptions options_of(const Arguments& a) {
   cmap::CaptureOptions options;
   const std::vector<std::string> presets = cmap::capture_preset_names();
   if (std::ranges::find(presets, a.preset) != presets.end() || a.preset.find_first_of("./") == std::string::npos) {
@@ -55,13 +55,13 @@ cmap::CaptureOptions options_of(const CLI::App& app, const Arguments& a) {
     cmap::apply_capture_config_file(options, a.preset);
   }
   for (const std::string& assignment : a.assignments) cmap::set_capture_option(options, assignment);
-  if (app.get_option("--seed")->count() > 0) options.seed = a.seed;
+  if (a.seed) options.seed = *a.seed;
   return options;
 }
 
-cmap::ExitCode run(const CLI::App& app, const Arguments& a) {
+cmap::ExitCode run(const Arguments& a) {
   const cmap::ExecutionScope scope({.threads = a.common.threads});
-  const cmap::CaptureOptions options = options_of(app, a);
+  const cmap::CaptureOptions options = options_of(a);
   if (a.print_options) {
     cmap::print(cmap::to_json(options).dump(2) + "\n");
     return cmap::ExitCode::kDone;
@@ -76,9 +76,8 @@ cmap::ExitCode run(const CLI::App& app, const Arguments& a) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(kDescription, "cmap_simulate");
-  app.footer(kExample);
+  cmap::CommandLine line("cmap_simulate", kDescription, kExample);
   Arguments arguments;
-  add_options(app, arguments);
-  return cmap::run_program(app, argc, argv, [&] { return run(app, arguments); });
+  add_options(line, arguments);
+  return cmap::run_program(line, argc, argv, [&] { return run(arguments); });
 }

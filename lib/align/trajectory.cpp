@@ -113,11 +113,10 @@ Similarity fit_centers(std::span<const PosePair> pairs, const ScaleModel& model)
   return fit_similarity(center_moments(pairs), model);
 }
 
-TrajectoryFit trajectory_fit_from_name(std::string_view name) {
-  if (name == "first-frame") return TrajectoryFit::kFirstFrame;
-  if (name == "se3") return TrajectoryFit::kSe3;
-  if (name == "sim3") return TrajectoryFit::kSim3;
-  throw UsageError(fmt::format("{} is no fit of trajectories: first-frame, se3, sim3", name));
+const EnumNames<TrajectoryFit>& trajectory_fit_names() {
+  static const EnumNames<TrajectoryFit> names{
+      {TrajectoryFit::kFirstFrame, "first-frame"}, {TrajectoryFit::kSe3, "se3"}, {TrajectoryFit::kSim3, "sim3"}};
+  return names;
 }
 
 Alignment align_trajectories(const Trajectory& source, const Trajectory& target, TrajectoryFit fit, double max_gap_s) {

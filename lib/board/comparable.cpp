@@ -15,20 +15,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Ids = std::set<std::string>;
 
-/// What was chosen to be computed beside the values; it changes none.
-bool is_choice(const std::string& parameter) {
-  static const std::set<std::string> kChoices{"metrics",
-                                              "as",
-                                              "lcr-curve",
-                                              "bootstrap",
-                                              "block",
-                                              "observed",
-                                              "observed-range",
-                                              "observed-voxel",
-                                              "sensitivity",
-                                              "sensitivity-translation",
-                                              "sensitivity-rotation"};
-  return kChoices.contains(parameter);
+/// Options, by name, that choose what is computed beside the values.
+Ids names_of_choices() {
+  EvaluationOptions options;
+  Ids names;
+  for (const OptionField& field : option_fields(options)) {
+    if (field.role == OptionRole::kBeside) names.insert(field.name);
+  }
+  return names;
 }
 
 /// Objects read the same whatever the order of their members.
@@ -74,7 +68,8 @@ Ids metrics_to_compare(const SavedReport& a, const SavedReport& b, const MetricS
 }
 
 void require_same_parameters(const SavedReport& a, const SavedReport& b, const Ids& metrics) {
-  const auto skip = [&](const std::string& name) { return is_choice(name) || !bears_on(name, metrics); };
+  const Ids choices = names_of_choices();
+  const auto skip = [&](const std::string& name) { return choices.contains(name) || !bears_on(name, metrics); };
   const auto list = differences(a.json.at("parameters"), b.json.at("parameters"), skip);
   if (list.empty()) return;
   throw UsageError(fmt::format("{} and {} have different parameters: {}; evaluate both maps with the same ones{}",

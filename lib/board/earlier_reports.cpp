@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "cmap/eval/options.hpp"
+#include "cmap/report/parameters.hpp"
 #include "cmap/report/report.hpp"
 
 namespace cmap {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "cmap/eval/bootstrap.hpp"
-#include "cmap/eval/options.hpp"
+#include "cmap/eval/configuration.hpp"
 #include "cmap/report/record_json.hpp"
 
 namespace cmap {

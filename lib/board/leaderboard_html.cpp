@@ -2,6 +2,7 @@
 
 #include "cmap/eval/metric_catalog.hpp"
 #include "cmap/report/file_names.hpp"
+#include "cmap/report/parameters.hpp"
 #include "html_tables.hpp"
 #include "leaderboard_tables.hpp"
 

@@ -1,15 +1,20 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "child_process.hpp"
 #include "cmap/board/leaderboard.hpp"
 #include "cmap/core/error.hpp"
 #include "cmap/core/version.hpp"
 #include "cmap/eval/protocol.hpp"
 #include "cmap/io/file_place.hpp"
+#include "cmap/io/option_text.hpp"
 #include "cmap/io/output_folder.hpp"
 #include "cmap/io/point_cloud_file.hpp"
 #include "cmap/report/figure_module.hpp"
 #include "cmap/report/html_report.hpp"
+#include "cmap/report/parameters.hpp"
 #include "cmap/report/report.hpp"
 #include "pair_folder.hpp"
 
@@ -22,12 +27,8 @@ namespace fs = std::filesystem;
 /// The command that gives the same report, from the data root.
 std::string command_for(const std::string& reference, const std::string& estimate, const EvaluationOptions& options) {
   std::vector<std::string> words{"cmap_eval", reference, estimate};
-  for (const OptionSpec& spec : evaluation_option_specs()) {
-    const Json value = spec.get(options);
-    if (value == spec.get(EvaluationOptions{})) continue;
-    words.push_back(fmt::format("--{}", spec.name));
-    if (spec.kind != OptionKind::kFlag) words.push_back(command_line_text(value));
-  }
+  EvaluationOptions given = options, defaults;
+  std::ranges::move(arguments_for(option_fields(given), option_fields(defaults)), std::back_inserter(words));
   return shell_command(words);
 }
 

@@ -1,6 +1,7 @@
 #include <filesystem>
 
 #include "cmap/board/leaderboard.hpp"
+#include "cmap/eval/configuration.hpp"
 #include "cmap/eval/metric_catalog.hpp"
 #include "cmap/io/json_text.hpp"
 #include "manifest_json.hpp"
@@ -113,7 +114,8 @@ LeaderboardManifest manifest_in(const Json& json, const fs::path& path) {
   // The pages of single maps show recall against tau, as with cmap_eval --html.
   manifest.options.lcr_curve = true;
   if (json.contains("parameters")) apply_config(manifest.options, json.at("parameters").dump(), "parameters");
-  if (manifest.options.align == "trajectory") throw UsageError("parameters: align: a manifest has no trajectories");
+  if (manifest.options.align.kind == AlignKind::kTrajectory)
+    throw UsageError("parameters: align: a manifest has no trajectories");
   manifest.sequences = sequences_in(required(json, "the manifest", "sequences"));
   manifest.methods = methods_in(required(json, "the manifest", "methods"), manifest.sequences);
   if (json.contains("published")) manifest.published = published_in(json.at("published"), path);

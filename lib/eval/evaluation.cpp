@@ -76,13 +76,12 @@ std::vector<PeerRecord> peer_records(MetricInputs& inputs, const EvaluationOptio
                                      std::vector<Warning>& warnings) {
   const PeerOptions peer_options{tanks_and_temples_tau_m(options), options.crop};
   std::vector<PeerRecord> records;
-  for (const std::string& name : options.as) {
-    const PeerTool& tool = *peer_tool(name);
-    PeerRecord& peer = records.emplace_back(PeerRecord{name, {}});
-    if (tool.no_color.empty() || every_point_has_color(*inputs.pair)) {
-      peer.record = tool.record(inputs, peer_options);
+  for (const PeerTool* tool : options.as) {
+    PeerRecord& peer = records.emplace_back(PeerRecord{std::string(tool->name), {}});
+    if (tool->no_color.empty() || every_point_has_color(*inputs.pair)) {
+      peer.record = tool->record(inputs, peer_options);
     } else {
-      warnings.push_back({std::string(tool.no_color_id), std::string(tool.no_color)});
+      warnings.push_back({std::string(tool->no_color_id), std::string(tool->no_color)});
     }
   }
   return records;

@@ -10,6 +10,7 @@
 #include "cmap/core/error.hpp"
 #include "cmap/core/spelling.hpp"
 #include "cmap/metrics/catalog.hpp"
+#include "cmap/peers/peer_tool.hpp"
 
 namespace cmap {
 namespace {
@@ -67,7 +68,7 @@ void select(MetricSelection& selection, const MetricInfo& metric, const std::str
 }
 
 void refuse_options_of_pairs(const EvaluationOptions& options) {
-  const std::pair<const char*, bool> of_pairs[] = {{"align", options.align != "none"},
+  const std::pair<const char*, bool> of_pairs[] = {{"align", options.align.kind != AlignKind::kNone},
                                                    {"as", !options.as.empty()},
                                                    {"bootstrap", options.bootstrap > 0},
                                                    {"observed", options.observed != Observed::kNone},
@@ -101,9 +102,9 @@ MetricSelection select_metrics(const EvaluationOptions& options) {
     for (const MetricInfo* metric : metrics_named(name)) select(selection, *metric, name);
   }
   const auto contains = [&](const Metric& metric) { return selection.contains(metric.info.id); };
-  const bool as_mapeval = std::ranges::count(options.as, "mapeval") > 0;
+  const bool for_a_tool = std::ranges::any_of(options.as, &PeerTool::reads_gaussians);
   selection.needs_gaussians =
-      as_mapeval || contains(catalog::average_wasserstein) || contains(catalog::spatial_consistency);
+      for_a_tool || contains(catalog::average_wasserstein) || contains(catalog::spatial_consistency);
   return selection;
 }
 

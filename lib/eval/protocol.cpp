@@ -18,14 +18,13 @@ Alignment align_by_trajectories(const EvaluationOptions& options, const Protocol
   if (!inputs.reference_trajectory || !inputs.estimate_trajectory) {
     throw UsageError("align: \"trajectory\" needs the trajectories of both maps");
   }
-  return align_trajectories(*inputs.estimate_trajectory, *inputs.reference_trajectory,
-                            trajectory_fit_from_name(options.trajectory_fit));
+  return align_trajectories(*inputs.estimate_trajectory, *inputs.reference_trajectory, options.trajectory_fit);
 }
 
 Alignment align_estimate(const PointCloud& reference, const PointCloud& estimate, const EvaluationOptions& options,
                          const ProtocolInputs& inputs) {
-  if (options.align == "trajectory") return align_by_trajectories(options, inputs);
-  if (options.align == "tanksandtemples") {
+  if (options.align.kind == AlignKind::kTrajectory) return align_by_trajectories(options, inputs);
+  if (options.align.kind == AlignKind::kTanksAndTemples) {
     TanksAndTemplesOptions tanks;
     tanks.tau_m = tanks_and_temples_tau_m(options);
     tanks.crop = options.crop;
@@ -36,7 +35,7 @@ Alignment align_estimate(const PointCloud& reference, const PointCloud& estimate
   how.voxel_m = options.align_voxel_m;
   how.max_distance_m = options.align_distance_m;
   how.with_scale = options.align_scale;
-  return align(estimate, reference, registration_method(options.align), how);
+  return align(estimate, reference, *options.align.registration, how);
 }
 
 /// Low values say that the scores may measure the alignment more than the map.
@@ -74,7 +73,7 @@ Evaluation evaluate_by_protocol(PointCloud reference, PointCloud estimate, const
   Eigen::Matrix4d T_ref_est = inputs.T_initial;
   std::optional<Alignment> alignment;
   MetricRecords before;
-  if (options.align != "none") {
+  if (options.align.kind != AlignKind::kNone) {
     timed("scores before", 0.05, [&] { before = evaluate(reference, estimate, plain(options), T_ref_est).metrics; });
     timed("align", 0.1, [&] { alignment = align_estimate(reference, estimate, options, inputs); });
     T_ref_est = alignment->T_dst_src;

@@ -15,8 +15,10 @@ std::size_t DistanceBands::n_within(double threshold_m) const {
   return static_cast<std::size_t>(std::ranges::upper_bound(upper_m_, threshold_m) - upper_m_.begin());
 }
 
-const char* singletons_name(Singletons singletons) {
-  return singletons == Singletons::kZero ? "zero" : singletons == Singletons::kExclude ? "exclude" : "refuse";
+const EnumNames<Singletons>& singletons_names() {
+  static const EnumNames<Singletons> names{
+      {Singletons::kZero, "zero"}, {Singletons::kExclude, "exclude"}, {Singletons::kRefuse, "refuse"}};
+  return names;
 }
 
 }  // namespace cmap

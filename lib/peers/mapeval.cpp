@@ -112,7 +112,7 @@ Record mapeval_record(MetricInputs& inputs, const PeerOptions&) {
 
 namespace peers {
 
-extern constinit const PeerTool mapeval{.name = "mapeval", .record = mapeval_record};
+extern constinit const PeerTool mapeval{.name = "mapeval", .record = mapeval_record, .reads_gaussians = true};
 
 }  // namespace peers
 }  // namespace cmap

@@ -2,9 +2,12 @@
 
 namespace cmap {
 
-std::vector<std::string> peer_names() {
-  std::vector<std::string> names;
-  for (const PeerTool* tool : peer_tools()) names.emplace_back(tool->name);
+const EnumNames<const PeerTool*>& peer_tool_names() {
+  static const EnumNames<const PeerTool*> names = [] {
+    EnumNames<const PeerTool*> all;
+    for (const PeerTool* tool : peer_tools()) all.emplace_back(tool, tool->name);
+    return all;
+  }();
   return names;
 }
 

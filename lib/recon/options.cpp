@@ -18,10 +18,6 @@ const EnumNames<RotationCorrection> kRotationNames{{RotationCorrection::kJoint, 
                                                    {RotationCorrection::kPaper, "paper"}};
 const EnumNames<OverlapScale> kOverlapNames{{OverlapScale::kDepths, "depths"}, {OverlapScale::kCenters, "centers"}};
 const EnumNames<ScaleVoting> kVotingNames{{ScaleVoting::kRobust, "robust"}, {ScaleVoting::kPaper, "paper"}};
-const EnumNames<RegistrationMethod> kRegistrationNames{{RegistrationMethod::kPrefusion, "prefusion"},
-                                                       {RegistrationMethod::kNormal, "normal"},
-                                                       {RegistrationMethod::kPaper, "paper"},
-                                                       {RegistrationMethod::kRobust, "robust"}};
 
 constexpr NumberRange kCosine{.low = -1.0, .high = 1.0}, kFactor{.low = 1.0, .above_low = true};
 constexpr NumberRange kCount{.low = 0, .high = 1e9}, kAtLeastOne{.low = 1, .high = 1e9};
@@ -82,7 +78,7 @@ OptionFields prefusion_fields(PreFusionOptions& prefusion) {
 
 OptionFields registration_fields(RegistrationOptions& registration) {
   return {
-      field("registration", registration.method, kRegistrationNames),
+      field("registration", registration.method, registration_method_names()),
       field("registration_voxel_m", registration.voxel_m, kPositive),
       field("registration_thinning", registration.thinning, kPositive),
       field("registration_first_gate", registration.first_gate, kPositive),
@@ -153,6 +149,14 @@ void apply(ReconstructionOptions& options, const Json& config) {
 }
 
 }  // namespace
+
+const EnumNames<RegistrationMethod>& registration_method_names() {
+  static const EnumNames<RegistrationMethod> names{{RegistrationMethod::kPrefusion, "prefusion"},
+                                                   {RegistrationMethod::kNormal, "normal"},
+                                                   {RegistrationMethod::kPaper, "paper"},
+                                                   {RegistrationMethod::kRobust, "robust"}};
+  return names;
+}
 
 OptionFields option_fields(ReconstructionOptions& o) {
   OptionFields fields;

@@ -121,13 +121,6 @@ void check_inputs(const Capture& capture, const ReconstructionOptions& options, 
 
 std::string_view stage_name(Stage stage) { return kStageNames.at(static_cast<std::size_t>(stage)); }
 
-Stage stage_from_name(std::string_view name) {
-  for (std::size_t i = 0; i < kStageNames.size(); ++i) {
-    if (kStageNames[i] == name) return static_cast<Stage>(i);
-  }
-  throw UsageError(fmt::format("stage \"{}\" is none of prefusion, registration, posegraph, fusion", name));
-}
-
 CaptureParts parts_needed(const ReconstructionOptions& options, Stage last) {
   CaptureParts parts{.images = Want::kNo, .scans = Want::kYes, .imu = Want::kNo};
   if (options.registration.method == RegistrationMethod::kPrefusion) parts.scans = Want::kIfUsable;

@@ -10,6 +10,7 @@
 #include "cmap/align/align.hpp"
 #include "cmap/core/version.hpp"
 #include "cmap/io/transform_file.hpp"
+#include "cmap/report/parameters.hpp"
 #include "cmap/report/record_json.hpp"
 #include "cmap/report/table_text.hpp"
 
@@ -57,7 +58,7 @@ Json alignment_record(const Evaluation& evaluation) {
   const double scale = evaluation.alignment ? evaluation.alignment->scale
                        : given              ? std::cbrt(T.topLeftCorner<3, 3>().determinant())
                                             : 1.0;
-  return {{"method", evaluation.alignment ? evaluation.options.align
+  return {{"method", evaluation.alignment ? name_of(evaluation.options.align, align_method_names())
                      : given              ? "given"
                                           : "none"},
           {"T_ref_est", transform_json(T)},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "cmap/eval/configuration.hpp"
 #include "cmap/io/point_cloud_file.hpp"
 #include "conformance/records.hpp"
 

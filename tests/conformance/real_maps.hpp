@@ -2,6 +2,7 @@
 
 // Real maps for the tests; they lie outside the repository: $CMAP_SHARED_DIR, or ../shared beside it.
 
+#include "cmap/eval/configuration.hpp"
 #include "cmap/io/point_cloud_file.hpp"
 #include "conformance/records.hpp"
 

@@ -13,6 +13,7 @@
 
 #include "cmap/core/error.hpp"
 #include "cmap/eval/evaluation.hpp"
+#include "cmap/peers/peer_tool.hpp"
 #include "cmap/report/record_json.hpp"
 #include "core/refusal.hpp"
 #include "spatial/clouds.hpp"
@@ -67,6 +68,19 @@ inline nlohmann::ordered_json peer_fields(const Evaluation& evaluation, std::str
 
 /// No warning.
 inline const std::vector<std::string> kNone;
+
+inline std::vector<const PeerTool*> tools(const std::vector<std::string>& names) {
+  std::vector<const PeerTool*> tools;
+  for (const std::string& name : names) tools.push_back(peer_tool(name));
+  return tools;
+}
+
+inline AlignMethod aligner(std::string_view name) {
+  for (const auto& [method, known] : align_method_names()) {
+    if (known == name) return method;
+  }
+  throw std::out_of_range("no such way to align");
+}
 
 inline EvaluationOptions options_for(std::vector<std::string> metrics) {
   EvaluationOptions options;

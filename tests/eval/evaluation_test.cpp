@@ -51,7 +51,7 @@ Json everything(const Evaluation& evaluation) {
 EvaluationOptions all_options() {
   EvaluationOptions options = options_for({"all"});
   options.lcr_curve = true;
-  options.as = {"color-map-evaluation", "cloudanalyzer", "mapeval", "open3d", "mpeg", "cloudcompare"};
+  options.as = test::tools({"color-map-evaluation", "cloudanalyzer", "mapeval", "open3d", "mpeg", "cloudcompare"});
   options.mme_radius_m = 0.3;
   options.ccs_voxel_m = 0.5;
   return options;
@@ -82,7 +82,7 @@ TEST(Evaluation, VoxelsTooSmallAreRefusedForWhateverUsesThem) {
   EXPECT_THAT(refusal_of<UsageError>([&] { evaluate(kReference, kEstimate, options); }), StartsWith("awd-voxel: "));
   options.metrics = {"chamfer"};
   EXPECT_NO_THROW(evaluate(kReference, kEstimate, options));
-  options.as = {"mapeval"};
+  options.as = test::tools({"mapeval"});
   EXPECT_THAT(refusal_of<UsageError>([&] { evaluate(kReference, kEstimate, options); }), StartsWith("awd-voxel: "));
 }
 
@@ -259,7 +259,7 @@ TEST(Evaluation, CropAndThinningAreWhatIsCompared) {
 
 TEST(Evaluation, OtherToolsAreAddedByName) {
   EvaluationOptions options = options_for({"chamfer"});
-  options.as = {"cloudcompare", "mpeg"};
+  options.as = test::tools({"cloudcompare", "mpeg"});
   const Evaluation found = evaluate(kReference, kEstimate, options);
   EXPECT_EQ(found.peers.size(), 2U);
   EXPECT_EQ(test::peer_fields(found, "cloudcompare").at("mean"), 1.625);
@@ -293,7 +293,7 @@ TEST(Evaluation, ConsistencyHasItsValueUnderBothRules) {
       EXPECT_EQ(numbers.at("n_singletons"), 1);
     }
     EXPECT_EQ(record.at("parameters"),
-              Json({{"voxel_m", 0.1}, {"singletons", singletons_name(singletons)}, {"min_points", 2}}));
+              Json({{"voxel_m", 0.1}, {"singletons", name_of(singletons, singletons_names())}, {"min_points", 2}}));
     EXPECT_EQ(warning_ids(found.warnings), kNone) << "a third of single points is no more than half";
   }
 }
@@ -336,7 +336,7 @@ TEST(Evaluation, ThresholdsMeanWhatWasTyped) {
   options.overlap_distance_m = options.lcr_radius_m = 0.1;
   options.color_max_distance_m = 0.1;
   options.bootstrap = 5;
-  options.as = {"open3d", "cloudanalyzer"};
+  options.as = test::tools({"open3d", "cloudanalyzer"});
   const Evaluation found = evaluate(reference, estimate, options);
   const Json intervals = intervals_json(*found.intervals);
   for (const char* id : {"fitness", "completeness", "f_score"}) {
@@ -365,7 +365,7 @@ TEST(Evaluation, PointsWithoutColorCountForGeometryOnly) {
   estimate.colors = Array<RgbF>{{0, 0, 0}, none};
   EvaluationOptions options = options_for({"all"});
   options.bootstrap = 5;
-  options.as = {"mpeg", "color-map-evaluation", "cloudanalyzer"};
+  options.as = test::tools({"mpeg", "color-map-evaluation", "cloudanalyzer"});
   const Evaluation found = evaluate(reference, estimate, options);
   EXPECT_EQ(fields(found, "chamfer").at("n_reference"), 3);
   const Json cd = fields(found, "color_distance");
@@ -423,7 +423,7 @@ TEST(Evaluation, TheAuthorsToolAtItsDefaults) {
   places.push_back({10, 0, 0});
   colors.push_back({0, 0, 255});
   EvaluationOptions options = options_for({"chamfer"});
-  options.as = {"color-map-evaluation"};
+  options.as = test::tools({"color-map-evaluation"});
   options.lcr_tau = 9.0;
   options.lcr_radius_m = 99.0;
   options.ccs_voxel_m = 7.0;
@@ -442,7 +442,7 @@ TEST(Evaluation, TheAuthorsToolAtItsDefaults) {
 /// Distances 0.25 and 3 one way; 0.25, 3 and 5 the other. Only the thresholds 0.3, 0.5 and 1 m see any: P 1/2, R 1/3.
 TEST(Evaluation, CloudAnalyzerAtItsDefaults) {
   EvaluationOptions options = options_for({"chamfer"});
-  options.as = {"cloudanalyzer"};
+  options.as = test::tools({"cloudanalyzer"});
   options.thresholds_m = {7.0};
   const Evaluation evaluation = evaluate(kReference, kEstimate, options);
   const Json found = test::peer_fields(evaluation, "cloudanalyzer");

@@ -1,9 +1,11 @@
 #include "cmap/eval/options.hpp"
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "cmap/eval/configuration.hpp"
 #include "cmap/eval/metric_catalog.hpp"
+#include "cmap/io/option_text.hpp"
+#include "cmap/report/parameters.hpp"
 #include "eval/eval_testing.hpp"
 #include "io/io_testing.hpp"
 
@@ -16,101 +18,72 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-const OptionSpec& spec(const std::string& name) {
-  for (const OptionSpec& candidate : evaluation_option_specs()) {
-    if (candidate.name == name) return candidate;
+Json parsed(const char* json) { return Json::parse(json); }
+
+void set(EvaluationOptions& options, const std::string& name, const std::string& text) {
+  for (const OptionField& field : option_fields(options)) {
+    if (field.name == name) return set_from_text(field, text);
   }
   throw std::runtime_error("no option " + name);
 }
 
-Json parsed(const char* json) { return Json::parse(json); }
-
-/// An option, a text that sets it, and what a report then holds.
-struct Setting {
+/// The text of a value that a field does not have.
+struct OtherText {
   const char* name;
-  const char* text;
-  const char* json;
+
+  std::string operator()(const NumberValue& v) const { return std::to_string(2.0 * *v.value); }
+  std::string operator()(const OptionalNumberValue&) const { return "0.25"; }
+  std::string operator()(const CountValue& v) const { return std::to_string(*v.value + 1); }
+  std::string operator()(const FlagValue& v) const { return *v.value ? "false" : "true"; }
+  std::string operator()(const BytesValue&) const { return "2,6"; }
+  std::string operator()(const ChoiceValue& v) const { return v.names.at((v.place() + 1) % v.names.size()); }
+  std::string operator()(const NumberListValue&) const { return "1,2,3,4,5,6"; }
+  std::string operator()(const NameListValue&) const { return std::string(name) == "as" ? "mpeg,open3d" : "AC"; }
+  std::string operator()(const auto&) const { throw std::runtime_error(std::string(name) + ": no other value known"); }
 };
 
-const Setting kSettings[] = {
-    {"metrics", "color,chamfer", R"(["color", "chamfer"])"},
-    {"thresholds", "0.4,0.3", "[0.4, 0.3]"},
-    {"overlap-distance", "0.7", "0.7"},
-    {"lcr-tau", "0.05", "0.05"},
-    {"lcr-radius", "0.25", "0.25"},
-    {"lcr-curve", "true", "true"},
-    {"ccs-voxel", "0.3", "0.3"},
-    {"ccs-singletons", "exclude", R"("exclude")"},
-    {"ccs-min-points", "5", "5"},
-    {"awd-voxel", "1.5", "1.5"},
-    {"awd-min-points", "50", "50"},
-    {"scs-radius", "3", "3"},
-    {"mme-radius", "0.3", "0.3"},
-    {"mme-min-neighbors", "7", "7"},
-    {"color-max-distance", "2", "2.0"},
-    {"voxel", "0.05", "0.05"},
-    {"crop", "-1,-2,-3,1,2,3", "[-1.0, -2.0, -3.0, 1.0, 2.0, 3.0]"},
-    {"as", "open3d,mpeg", R"(["open3d", "mpeg"])"},
-    {"bootstrap", "200", "200"},
-    {"block", "2.5", "2.5"},
-    {"observed", "sensor", R"("sensor")"},
-    {"observed-range", "60", "60.0"},
-    {"observed-voxel", "0.25", "0.25"},
-    {"align", "gicp", R"("gicp")"},
-    {"align-voxel", "0.3", "0.3"},
-    {"align-distance", "4", "4.0"},
-    {"align-scale", "true", "true"},
-    {"trajectory-fit", "se3", R"("se3")"},
-    {"tanksandtemples-tau", "0.03", "0.03"},
-    {"sensitivity", "true", "true"},
-    {"sensitivity-translation", "0.05", "0.05"},
-    {"sensitivity-rotation", "0.5", "0.5"},
-    {"index", "flann", R"("flann")"},
-    {"keep-noise", "true", "true"},
-    {"classes", "2,6", "[2, 6]"},
-};
-
-TEST(Options, EveryOneIsTested) { EXPECT_EQ(evaluation_option_specs().size(), std::size(kSettings)); }
-
-TEST(Options, AreSetFromText) {
-  for (const Setting& setting : kSettings) {
-    SCOPED_TRACE(setting.name);
-    EvaluationOptions options;
-    ASSERT_NE(spec(setting.name).get(options), parsed(setting.json)) << "the test must change the default";
-    set_option(options, spec(setting.name), setting.text);
-    EXPECT_EQ(spec(setting.name).get(options), parsed(setting.json));
+TEST(Options, EachIsSetFromTextAndFromWhatAReportSaysOfIt) {
+  const Json defaults = to_json(EvaluationOptions{});
+  for (std::size_t i = 0; i < defaults.size(); ++i) {
+    EvaluationOptions options, again;
+    const OptionField field = option_fields(options).at(i);
+    SCOPED_TRACE(field.name);
+    set_from_text(field, std::visit(OtherText{field.name}, field.value));
+    const Json changed = to_json(options);
+    EXPECT_NE(changed.at(field.name), defaults.at(field.name));
+    Json expected = defaults;
+    expected[field.name] = changed.at(field.name);
+    EXPECT_EQ(changed, expected) << "this option and no other";
+    apply_config(again, Json{{field.name, changed.at(field.name)}}.dump(), "a.json");
+    EXPECT_EQ(to_json(again), changed);
   }
 }
 
-TEST(Options, AreSetFromAConfiguration) {
-  for (const Setting& setting : kSettings) {
-    SCOPED_TRACE(setting.name);
-    EvaluationOptions options;
-    apply_config(options, "{\"" + std::string(setting.name) + "\": " + setting.json + "}", "a.json");
-    Json expected = to_json(EvaluationOptions{});
-    expected[setting.name] = parsed(setting.json);
-    EXPECT_EQ(to_json(options), expected) << "this option and no other";
-  }
+TEST(Options, ThoseThatAreNotTheDefaultMakeACommandLine) {
+  EvaluationOptions options, defaults;
+  EXPECT_THAT(arguments_for(option_fields(options), option_fields(defaults)), ::testing::IsEmpty());
+  options.align = test::aligner("gicp");
+  options.crop = Box3d{{-1, -2, -3}, {1, 2, 3.5}};
+  options.keep_noise = true;
+  EXPECT_THAT(arguments_for(option_fields(options), option_fields(defaults)),
+              ::testing::ElementsAre("--crop", "-1.0,-2.0,-3.0,1.0,2.0,3.5", "--align", "gicp", "--keep-noise"));
 }
 
 TEST(Options, DefaultsAreThoseOfTheDefinitions) {
   const Json defaults = to_json(EvaluationOptions{});
   const Json expected = parsed(R"({
     "thresholds": [0.2, 0.1, 0.08, 0.05, 0.01], "overlap-distance": 1.0, "lcr-tau": 0.1, "lcr-radius": 0.5,
-    "lcr-curve": false, "ccs-voxel": 0.1, "ccs-singletons": "zero", "ccs-min-points": 2,
-    "awd-voxel": 3.0, "awd-min-points": 100, "scs-radius": 5, "mme-radius": 0.1, "mme-min-neighbors": 10, "color-max-distance": null, "voxel": null,
-    "crop": null, "as": [], "bootstrap": 0, "block": 10.0, "observed": "none", "observed-range": 100.0, "observed-voxel": 0.5,
-    "align": "none", "align-voxel": null, "align-distance": null, "align-scale": false, "trajectory-fit": "sim3",
-    "tanksandtemples-tau": null, "sensitivity": false, "sensitivity-translation": 0.01, "sensitivity-rotation": 0.1, "index": "bvh",
-    "keep-noise": false, "classes": []})");
+    "ccs-voxel": 0.1, "ccs-singletons": "zero", "ccs-min-points": 2, "awd-voxel": 3.0, "awd-min-points": 100,
+    "scs-radius": 5, "mme-radius": 0.1, "mme-min-neighbors": 10, "align": "none"})");
   for (const auto& [name, value] : expected.items()) EXPECT_EQ(defaults.at(name), value) << name;
-  EXPECT_EQ(defaults.size(), expected.size() + 1) << "the metrics are the one more";
 }
 
 TEST(Options, TheirRecordIsAConfiguration) {
-  EvaluationOptions set;
-  for (const Setting& setting : kSettings) set_option(set, spec(setting.name), setting.text);
-  for (const EvaluationOptions& original : {EvaluationOptions{}, set}) {
+  EvaluationOptions all_set;
+  for (const OptionField& field : option_fields(all_set)) {
+    set_from_text(field, std::visit(OtherText{field.name}, field.value));
+  }
+  for (const EvaluationOptions& original : {EvaluationOptions{}, all_set}) {
     EXPECT_FALSE(to_json(original).at("metrics").empty()) << "defaults have a name, too";
     EvaluationOptions again;
     apply_config(again, to_json(original).dump(), "a report");
@@ -122,15 +95,15 @@ TEST(Options, TheirRecordIsAConfiguration) {
 
 TEST(Options, TakeWholeNumbersInAnyNotation) {
   EvaluationOptions options;
-  set_option(options, spec("awd-min-points"), "1e3");
+  set(options, "awd-min-points", "1e3");
   EXPECT_EQ(options.awd_min_points, 1000U);
-  set_option(options, spec("lcr-radius"), "1");
+  set(options, "lcr-radius", "1");
   EXPECT_EQ(options.lcr_radius_m, 1.0);
 }
 
 TEST(Options, ListsMayHaveBlanks) {
   EvaluationOptions options;
-  set_option(options, spec("thresholds"), "0.2, 0.1");
+  set(options, "thresholds", "0.2, 0.1");
   EXPECT_EQ(options.thresholds_m, (std::vector<double>{0.2, 0.1}));
 }
 
@@ -190,37 +163,37 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"as", R"(["cloud_compare"])",
                 R"("cloud_compare" is unknown; did you mean cloudcompare?; tools are color-map-evaluation, clo)"},
         Refused{"as", R"("open3d")", "is not a list of words"},
-        Refused{"index", R"("kdtree")", R"("kdtree" is neither bvh nor flann)"}));
+        Refused{"index", R"("kdtree")", R"("kdtree" is none of bvh, flann)"}));
 
 class BadText : public ::testing::TestWithParam<Refused> {};
 
 TEST_P(BadText, IsRefusedByNameValueAndRule) {
   const auto& [name, text, says] = GetParam();
   EvaluationOptions options;
-  EXPECT_THAT(refusal_of<UsageError>([&] { set_option(options, spec(name), text); }),
+  EXPECT_THAT(refusal_of<UsageError>([&] { set(options, name, text); }),
               AllOf(StartsWith(std::string(name) + ": "), HasSubstr(says)));
   EXPECT_EQ(to_json(options), to_json(EvaluationOptions{})) << "nothing was set";
 }
 
-INSTANTIATE_TEST_SUITE_P(Options, BadText,
-                         ::testing::Values(Refused{"metrics", "", "names no metric"},
-                                           Refused{"metrics", "color,nope", R"("nope" is unknown)"},
-                                           Refused{"thresholds", "", "is not a list of numbers"},
-                                           Refused{"thresholds", "0.2,,0.1", R"("" is not a number)"},
-                                           Refused{"thresholds", "0.2,", R"("" is not a number)"},
-                                           Refused{"thresholds", "0.2,x", R"("x" is not a number)"},
-                                           Refused{"thresholds", "0.2,-0.1", "must be above 0 throughout"},
-                                           Refused{"lcr-radius", "", R"("" is not a number)"},
-                                           Refused{"lcr-radius", "0.5m", R"("0.5m" is not a number)"},
-                                           Refused{"lcr-radius", "-0.5", "-0.5 must be above 0"},
-                                           Refused{"lcr-radius", "inf", "inf"}, Refused{"lcr-radius", "nan", "nan"},
-                                           Refused{"lcr-radius", "1e999", "1e999"},
-                                           Refused{"lcr-curve", "yes", R"("yes" is neither true nor false)"},
-                                           Refused{"awd-min-points", "2.5", "2.5 is not a whole number"},
-                                           Refused{"awd-min-points", "1e30", "is not a whole number"},
-                                           Refused{"crop", "0,0,0,1,1", "is not xmin,ymin,zmin,xmax,ymax,zmax"},
-                                           Refused{"as", "pcl", R"("pcl" is unknown)"},
-                                           Refused{"index", "BVH", R"("BVH" is neither)"}));
+INSTANTIATE_TEST_SUITE_P(
+    Options, BadText,
+    ::testing::Values(Refused{"metrics", "", "names no metric"},
+                      Refused{"metrics", "color,nope", R"("nope" is unknown)"},
+                      Refused{"thresholds", "", "is not a list of numbers"},
+                      Refused{"thresholds", "0.2,,0.1", R"("" is not a number)"},
+                      Refused{"thresholds", "0.2,", R"("" is not a number)"},
+                      Refused{"thresholds", "0.2,x", R"("x" is not a number)"},
+                      Refused{"thresholds", "0.2,-0.1", "must be above 0 throughout"},
+                      Refused{"lcr-radius", "", R"("" is not a number)"},
+                      Refused{"lcr-radius", "0.5m", R"("0.5m" is not a number)"},
+                      Refused{"lcr-radius", "-0.5", "-0.5 must be above 0"}, Refused{"lcr-radius", "inf", "inf"},
+                      Refused{"lcr-radius", "nan", "nan"}, Refused{"lcr-radius", "1e999", "1e999"},
+                      Refused{"lcr-curve", "yes", R"("yes" is neither true nor false)"},
+                      Refused{"awd-min-points", "2.5", "2.5 is not a whole number"},
+                      Refused{"awd-min-points", "1e30", "is not a whole number"},
+                      Refused{"crop", "0,0,0,1,1", "is not xmin,ymin,zmin,xmax,ymax,zmax"},
+                      Refused{"as", "pcl", R"("pcl" is unknown)"},
+                      Refused{"index", "BVH", R"("BVH" is none of bvh, flann; did you mean bvh?)"}));
 
 TEST(Config, MayHaveComments) {
   EvaluationOptions options;

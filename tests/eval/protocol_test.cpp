@@ -37,7 +37,7 @@ double value(const Evaluation& evaluation, const char* id) { return *evaluation.
 
 EvaluationOptions aligning(const char* method) {
   EvaluationOptions options = options_for({"chamfer", "color_distance"});
-  options.align = method;
+  options.align = test::aligner(method);
   options.align_voxel_m = 0.3;
   return options;
 }

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "cmap/core/version.hpp"
+#include "cmap/report/parameters.hpp"
 #include "io/io_testing.hpp"
 #include "report/report_testing.hpp"
 
@@ -128,7 +129,7 @@ TEST(Report, OfOneMapHasNoReferenceAndNoAlignment) {
 
 TEST(Report, HasAliasesOnlyWhereAskedFor) {
   EvaluationOptions options = options_for({"chamfer"});
-  options.as = {"open3d"};
+  options.as = test::tools({"open3d"});
   EXPECT_THAT(keys(report_of(kReference, kEstimate, options).at("aliases")), ElementsAre("open3d"));
   EXPECT_FALSE(report_of(kReference, kEstimate).contains("aliases"));
 }
@@ -197,7 +198,7 @@ std::vector<std::uint64_t> bits_of_numbers(const Json& value) {
 
 TEST(Report, NumbersSurviveTheirText) {
   EvaluationOptions options = options_for({"all"});
-  options.as = {"color-map-evaluation", "cloudanalyzer", "mapeval", "open3d", "mpeg", "cloudcompare"};
+  options.as = test::tools({"color-map-evaluation", "cloudanalyzer", "mapeval", "open3d", "mpeg", "cloudcompare"});
   options.lcr_curve = true;
   options.lcr_radius_m = std::nextafter(0.5, 1.0);
   Eigen::Matrix4d T = Eigen::Matrix4d::Identity();

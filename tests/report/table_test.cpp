@@ -236,7 +236,7 @@ TEST(Table, FourSignificantDigits) {
 
 TEST(Table, MissingValuesAreADash) {
   EvaluationOptions options = options_for({"all"});
-  options.as = {"color-map-evaluation", "cloudanalyzer", "mapeval", "open3d", "mpeg", "cloudcompare"};
+  options.as = test::tools({"color-map-evaluation", "cloudanalyzer", "mapeval", "open3d", "mpeg", "cloudcompare"});
   const std::string table = format_table(report_of(small_map({{0, 0, 0}}), small_map({{100, 0, 0}}), options));
   for (const char* symbol : {" CD ", " LCR ", " CCS ", " AC ", " AWD ", " MME "}) {
     EXPECT_THAT(line_with(table, symbol), ContainsRegex("(↓|↑) +-( |$)"));
@@ -248,7 +248,7 @@ TEST(Table, MissingValuesAreADash) {
 
 TEST(Table, OtherToolsFollowByName) {
   EvaluationOptions options = options_for({"chamfer"});
-  options.as = {"cloudcompare", "open3d"};
+  options.as = test::tools({"cloudcompare", "open3d"});
   const std::string table = format_table(report_of(gray_map({{0, 0, 0}}), gray_map({{0, 0, 0.5f}}), options));
   EXPECT_LT(table.find("\nas cloudcompare\n"), table.find("\nas open3d\n"));
   EXPECT_THAT(line_with(table, " mean "), ContainsRegex("mean +0.5"));

@@ -205,7 +205,7 @@ class BadUsage(CmapEval):
             ("--metrics", "", "names no metric"),
             ("--crop", "1,2,3", "is not xmin,ymin"),
             ("--as", "pcl", '"pcl" is unknown'),
-            ("--index", "octree", '"octree" is neither'),
+            ("--index", "octree", '"octree" is none of bvh, flann'),
             ("--ccs-singletons", "ignore", '"ignore" is none of zero, exclude, refuse'),
             ("--ccs-voxel", "1e-12", "too small"),
             ("--voxel", "0", "must be above 0"),

@@ -178,13 +178,10 @@ class Results(CmapEval):
 
     def test_the_help_names_every_option_and_exit_code(self):
         help_text = self.run_program("--help").stdout.decode()
-        for option in (
-            "output format config preset metrics thresholds overlap-distance lcr-tau lcr-radius lcr-curve ccs-voxel "
-            "ccs-singletons ccs-min-points awd-voxel awd-min-points scs-radius mme-radius mme-min-neighbors "
-            "color-max-distance voxel crop transform require export-errors export-reference-errors as index keep-noise "
-            "classes threads quiet version"
-        ).split():
-            self.assertIn(f"--{option}", help_text)
+        parameters = self.evaluate(self.reference, self.estimate)["parameters"]
+        for option in (*parameters, "output", "format", "config", "preset", "transform", "require", "export-errors",
+                       "export-reference-errors", "threads", "quiet", "version"):
+            self.assertIn(f" --{option} ", help_text.replace("\n", " ").replace(",", " "))
         for code in ("0 done", "1 a --require", "2 wrong usage", "3 an input", "4 the inputs", "70 internal"):
             self.assertIn(code, help_text)
 

@@ -2,11 +2,11 @@
 
 #include <optional>
 #include <span>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "cmap/align/alignment.hpp"
+#include "cmap/align/trajectory_fit.hpp"
 #include "cmap/align/umeyama.hpp"
 #include "cmap/geometry/similarity.hpp"
 #include "cmap/io/capture.hpp"
@@ -33,15 +33,6 @@ std::vector<PosePair> pair_in_time(const Trajectory& source, const Trajectory& t
 
 /// Umeyama's fit (see umeyama.hpp) on the positions of paired poses.
 Similarity fit_centers(std::span<const PosePair> pairs, const ScaleModel& model);
-
-enum class TrajectoryFit {
-  kFirstFrame,  ///< T = target pose * (source pose)^-1 of the first pair: exact there, no fit
-  kSe3,         ///< Umeyama on positions, scale 1
-  kSim3,        ///< Umeyama on positions with scale
-};
-
-/// "first-frame", "se3" or "sim3". Throws UsageError for anything else.
-TrajectoryFit trajectory_fit_from_name(std::string_view name);
 
 /// T_dst_src between the worlds of two trajectories of one body. RMSE is over the positions of all pairs; overlap is
 /// the share of the source's poses that have a target pose. Throws UnsupportedError where times do not meet, or where

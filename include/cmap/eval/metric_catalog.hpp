@@ -17,7 +17,7 @@ const MetricInfo* find_metric(std::string_view id_or_symbol);
 struct MetricSelection {
   std::set<std::string_view> ids;
   bool color_is_required = false;  ///< a color group or metric was named
-  bool needs_gaussians = false;    ///< AWD, SCS or MapEval's record
+  bool needs_gaussians = false;    ///< for AWD, SCS or another tool's numbers
   bool contains(std::string_view id) const { return ids.contains(id); }
 };
 

@@ -4,6 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "cmap/core/enum_names.hpp"
+
 namespace cmap {
 
 /// What a voxel of one point, whose colors cannot scatter, counts as in color consistency.
@@ -13,8 +15,8 @@ enum class Singletons {
   kRefuse,   ///< there must be none
 };
 
-/// "zero", "exclude" or "refuse".
-const char* singletons_name(Singletons singletons);
+/// "zero", "exclude", "refuse".
+const EnumNames<Singletons>& singletons_names();
 
 /// The parameters of the metrics; the defaults are those of METRICS, the paper's where it gives any.
 struct MetricOptions {

@@ -2,10 +2,9 @@
 
 #include <optional>
 #include <span>
-#include <string>
 #include <string_view>
-#include <vector>
 
+#include "cmap/core/enum_names.hpp"
 #include "cmap/metrics/metric_inputs.hpp"
 #include "cmap/metrics/record.hpp"
 
@@ -26,11 +25,13 @@ struct PeerTool {
   /// Warning where it needs a color at every point of both maps and there is not: then it has no record.
   std::string_view no_color_id = {};
   std::string_view no_color = {};
+  bool reads_gaussians = false;  ///< of the voxels of the average Wasserstein distance
 };
 
 /// All of them, in the order of --help.
 std::span<const PeerTool* const> peer_tools();
-std::vector<std::string> peer_names();
+/// By their names.
+const EnumNames<const PeerTool*>& peer_tool_names();
 /// Nullptr if there is none of that name.
 const PeerTool* peer_tool(std::string_view name);
 

@@ -5,9 +5,7 @@
 #include <string>
 
 #include "cmap/core/options.hpp"
-#include "cmap/recon/lidar_map.hpp"
 #include "cmap/recon/map_fusion.hpp"
-#include "cmap/recon/post_fusion.hpp"
 #include "cmap/recon/pre_fusion.hpp"
 #include "cmap/recon/registration.hpp"
 #include "cmap/recon/session_graph.hpp"
@@ -28,6 +26,9 @@ struct ReconstructionOptions {
 
 /// Each of them by its name in PIPELINE, with its rule. The options must outlive the list.
 OptionFields option_fields(ReconstructionOptions& options);
+
+/// As the option `registration` has them.
+const EnumNames<RegistrationMethod>& registration_method_names();
 
 /// Sets the options that a JSON object names (comments allowed). Throws UsageError naming `source` and the key:
 /// unknown, wrong type, out of range.

@@ -20,8 +20,6 @@ enum class Stage { kPrefusion, kRegistration, kPoseGraph, kFusion };
 
 /// "prefusion", "registration", "posegraph" or "fusion".
 std::string_view stage_name(Stage stage);
-/// Throws UsageError for anything else.
-Stage stage_from_name(std::string_view name);
 
 /// What became of one session.
 struct SessionOutcome {

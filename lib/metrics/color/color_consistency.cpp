@@ -105,7 +105,7 @@ extern constinit const Metric color_consistency{
           const MetricOptions& o = settings.options;
           Record record = consistency_of(sums.estimate, o.ccs_singletons);
           record.parameters = {{"voxel_m", o.ccs_voxel_m},
-                               {"singletons", singletons_name(o.ccs_singletons)},
+                               {"singletons", std::string(name_of(o.ccs_singletons, singletons_names()))},
                                {"min_points", o.ccs_min_points}};
           if (!sums.reference.empty()) record.add("reference", consistency_of(sums.reference, o.ccs_singletons));
           return record;

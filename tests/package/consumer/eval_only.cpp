@@ -1,5 +1,6 @@
 // Reads two maps and checks a requirement, with the installed library.
 
+#include <cmap/eval/configuration.hpp>
 #include <cmap/eval/requirement.hpp>
 #include <cmap/io/point_cloud_file.hpp>
 
