@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "cmap/core/execution.hpp"
 #include "cmap/peers/peer_tool.hpp"
 
 // MPEG's pc_error. It asks for the ten nearest neighbors, which no other metric needs: FLANN finds them.
@@ -20,6 +21,7 @@ constexpr std::size_t kFirstNeighbors = 10;
 constexpr std::size_t kMoreNeighbors = 5;
 constexpr std::size_t kMaxNeighbors = 30;
 constexpr double kSameSqDistance = 1e-8;
+constexpr std::size_t kChunk = 1024;
 
 /// Ordered by position, equal positions merged into one.
 struct MergedCloud {
@@ -139,6 +141,7 @@ MpegDirection one_way(const MergedCloud& from, const MpegSearch& to) {
   MpegDirection result;
   std::vector<Neighbor> near;
   for (std::size_t i = 0; i < from.positions.size(); ++i) {
+    if (i % kChunk == 0) throw_if_stopped();
     to.nearest(from.positions[i], near);
     result.point_mse_m2 += near.front().sq_dist;
     result.sq_hausdorff_m2 = std::max(result.sq_hausdorff_m2, near.front().sq_dist);
