@@ -109,10 +109,11 @@ TEST(OptionText, ArgumentsAreThoseThatDiffer) {
 TEST(Assignment, IsANameAndJsonOrAText) {
   EXPECT_EQ(read_assignment("a=2", "name=value").value, 2);
   EXPECT_EQ(read_assignment("a=b=c", "name=value").value, "b=c");
-  for (const char* wrong : {"a", "=2"}) {
-    EXPECT_EQ(refusal_of<UsageError>([&] { read_assignment(wrong, "name=value"); }),
-              "\"" + std::string(wrong) + "\" is not name=value");
-  }
+  const auto refusal = [](const char* text) {
+    return refusal_of<UsageError>([&] { read_assignment(text, "name=value"); });
+  };
+  EXPECT_EQ(refusal("a"), "\"a\" is not name=value");
+  EXPECT_EQ(refusal("=2"), "\"=2\" is not name=value");
 }
 
 }  // namespace
