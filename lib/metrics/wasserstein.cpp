@@ -7,22 +7,11 @@
 
 #include "cmap/core/exact_sum.hpp"
 #include "cmap/core/parallel.hpp"
+#include "voxel_moments.hpp"
 #include "voxels.hpp"
 
 namespace cmap {
 namespace {
-
-/// Sums about the voxel's center, so that far coordinates cancel nothing.
-struct MomentSums {
-  std::uint64_t n = 0;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d sum_sq = Eigen::Matrix3d::Zero();
-
-  Gaussian gaussian() const {
-    const Eigen::Vector3d mean = sum / static_cast<double>(n);
-    return {n, mean, sum_sq - static_cast<double>(n) * mean * mean.transpose()};
-  }
-};
 
 struct VoxelGaussian {
   VoxelIndex index;
@@ -30,19 +19,16 @@ struct VoxelGaussian {
 };
 
 /// The map's voxels with at least min_points points, ordered by index.
-std::vector<VoxelGaussian> voxel_gaussians(const PointBlocks& points, const VoxelFrame& frame,
+std::vector<VoxelGaussian> voxel_gaussians(const PointBlocks& points, const VoxelFrame& frame, const VoxelSteps& steps,
                                            std::uint64_t min_points) {
-  const auto add = [&](MomentSums& sums, std::size_t, const Eigen::Vector3d& world, const VoxelKey& key) {
-    const Eigen::Vector3d x = world - frame.center(key);
-    ++sums.n;
-    sums.sum += x;
-    sums.sum_sq += x * x.transpose();
+  const auto add = [&](VoxelMoments& moments, std::size_t, const Eigen::Vector3d& world, const VoxelKey& key) {
+    moments.add(steps.offset(world, key));
   };
-  const auto finish = [&](const VoxelKey& key, const MomentSums& sums) -> std::optional<VoxelGaussian> {
-    if (sums.n < min_points) return std::nullopt;
-    return VoxelGaussian{frame.index(key), sums.gaussian()};
+  const auto finish = [&](const VoxelKey& key, const VoxelMoments& moments) -> std::optional<VoxelGaussian> {
+    if (moments.n() < min_points) return std::nullopt;
+    return VoxelGaussian{frame.index(key), moments.gaussian(steps.step_m())};
   };
-  std::vector<VoxelGaussian> voxels = collect_voxels<MomentSums>(points, frame, add, finish);
+  std::vector<VoxelGaussian> voxels = collect_voxels<VoxelMoments>(points, frame, add, finish);
   std::ranges::sort(voxels, {}, &VoxelGaussian::index);
   return voxels;
 }
@@ -61,8 +47,9 @@ Eigen::Matrix3d root(const Eigen::Matrix3d& covariance) {
 std::vector<GaussianPair> gaussian_pairs(const MapPair& pair, double voxel_m, std::uint64_t min_points) {
   const VoxelFrame frame(united(pair.reference.index.bounds(), pair.estimate.index.bounds()), voxel_m);
   const std::uint64_t enough = std::max<std::uint64_t>(min_points, 2);
-  const auto in_reference = voxel_gaussians(pair.reference.index.points, frame, enough);
-  const auto in_estimate = voxel_gaussians(pair.estimate.index.points, frame, enough);
+  const VoxelSteps steps(frame, voxel_m);
+  const auto in_reference = voxel_gaussians(pair.reference.index.points, frame, steps, enough);
+  const auto in_estimate = voxel_gaussians(pair.estimate.index.points, frame, steps, enough);
 
   std::vector<GaussianPair> pairs;
   auto other = in_estimate.begin();

@@ -155,8 +155,9 @@ TEST(GaussianPairs, HandComputed) {
   EXPECT_EQ(pairs[0].index, (VoxelIndex{-1, 0, 0}));
   EXPECT_EQ(pairs[1].index, (VoxelIndex{0, 0, 0}));
   EXPECT_EQ(pairs[1].reference.n, 2U);
-  EXPECT_EQ(pairs[1].reference.mean, Eigen::Vector3d(0, -1, -1));  // from the center (2, 2, 2)
-  EXPECT_EQ(pairs[1].estimate.mean, Eigen::Vector3d(0, 0, -1));
+  EXPECT_EQ(pairs[1].reference.mean, Eigen::Vector3d(2, 1, 1));  // from the corner (0, 0, 0)
+  EXPECT_EQ(pairs[1].estimate.mean, Eigen::Vector3d(2, 2, 1));
+  EXPECT_EQ(pairs[0].reference.mean, Eigen::Vector3d(3, 2, 1));  // from (-4, 0, 0)
   EXPECT_EQ(pairs[1].reference.scatter, diagonal(2, 0, 0));
   EXPECT_EQ(pairs[0].reference.scatter, diagonal(0, 2, 0));
   EXPECT_EQ(pairs[0].estimate.scatter, diagonal(0, 0, 2));
@@ -177,14 +178,14 @@ std::map<VoxelIndex, std::vector<Eigen::Vector3d>> voxels_of(const PointCloud& c
 }
 
 void expect_is_gaussian_of(const Gaussian& found, const std::vector<Eigen::Vector3d>& points,
-                           const Eigen::Vector3d& center) {
+                           const Eigen::Vector3d& corner) {
   ASSERT_EQ(found.n, points.size());
   Eigen::Vector3d mean = kZero;
   for (const auto& p : points) mean += p / static_cast<double>(points.size());
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
   for (const auto& p : points) scatter += (p - mean) * (p - mean).transpose();
   // Coordinates of up to 20 m in sums of hundreds.
-  EXPECT_LT((found.mean + center - mean).norm(), 1e-12);
+  EXPECT_LT((found.mean + corner - mean).norm(), 1e-12);
   EXPECT_LT((found.scatter - scatter).norm(), 1e-12 * (1.0 + scatter.norm()));
 }
 
@@ -203,9 +204,9 @@ TEST(GaussianPairs, EqualTheDefinition) {
   for (const GaussianPair& pair : pairs) {
     const Eigen::Vector3d index(static_cast<double>(pair.index[0]), static_cast<double>(pair.index[1]),
                                 static_cast<double>(pair.index[2]));
-    const Eigen::Vector3d center = (index.array() + 0.5) * voxel_m;
-    expect_is_gaussian_of(pair.reference, in_reference[pair.index], center);
-    expect_is_gaussian_of(pair.estimate, in_estimate[pair.index], center);
+    const Eigen::Vector3d corner = index * voxel_m;
+    expect_is_gaussian_of(pair.reference, in_reference[pair.index], corner);
+    expect_is_gaussian_of(pair.estimate, in_estimate[pair.index], corner);
   }
 }
 

@@ -21,7 +21,7 @@ struct Gaussian {
   Eigen::Matrix3d covariance() const { return scatter / static_cast<double>(n - 1); }
 };
 
-/// A voxel that holds at least the asked number of points of both maps. Means are relative to the voxel's center.
+/// A voxel that holds at least the asked number of points of both maps. Means are relative to the voxel's corner.
 struct GaussianPair {
   VoxelIndex index;
   Gaussian reference;
@@ -29,7 +29,7 @@ struct GaussianPair {
 };
 
 /// The voxels of both maps with at least min_points (and 2) points each, ordered by index. Throws UsageError for voxels
-/// too small to be counted. Deterministic.
+/// too small to be counted. Deterministic, and the same bits for any order of the points.
 std::vector<GaussianPair> gaussian_pairs(const MapPair& pair, double voxel_m, std::uint64_t min_points);
 
 /// 2-Wasserstein distance (m) of two Gaussians with at least 2 points each:

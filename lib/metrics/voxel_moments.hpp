@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+
+#include "cmap/geometry/voxel_map.hpp"
+#include "cmap/metrics/wasserstein.hpp"
+#include "whole_sums.hpp"
+
+namespace cmap {
+
+/// An offset from the corner of a voxel in whole steps.
+using OffsetSteps = std::array<std::uint32_t, 3>;
+
+/// Offsets of points from the corners of their voxels, rounded to steps of 2^-30 m; where voxels have 4 m or more, to
+/// the power of two of which at most 2^32 reach across one. The same in every frame of voxels of that size.
+class VoxelSteps {
+ public:
+  VoxelSteps(const VoxelFrame& frame, double voxel_m);
+
+  double step_m() const { return step_m_; }
+  OffsetSteps offset(const Eigen::Vector3d& world, const VoxelKey& voxel) const {
+    return {steps(world.x(), base_.x() + voxel.x), steps(world.y(), base_.y() + voxel.y),
+            steps(world.z(), base_.z() + voxel.z)};
+  }
+
+ private:
+  /// The corner is rounded: a point at a face may seem to lie outside, and counts as at the face.
+  std::uint32_t steps(double world, double index) const { return whole_32((world - index * voxel_m_) * steps_per_m_); }
+
+  Eigen::Vector3d base_;  ///< index of the voxel of key 0: a whole number
+  double voxel_m_, step_m_, steps_per_m_;
+};
+
+/// Number, sums and sums of products of a voxel's points about its corner, in steps: whole numbers, so that neither the
+/// order nor the grouping of the points changes a bit. For up to 2^31 points. Not thread-safe.
+class VoxelMoments {
+ public:
+  void add(const OffsetSteps& at) {
+    const std::uint64_t x = at[0], y = at[1], z = at[2];
+    ++n_;
+    sum_[0] += x;
+    sum_[1] += y;
+    sum_[2] += z;
+    products_[0].add(x * x);
+    products_[1].add(x * y);
+    products_[2].add(x * z);
+    products_[3].add(y * y);
+    products_[4].add(y * z);
+    products_[5].add(z * z);
+  }
+  VoxelMoments& operator+=(const VoxelMoments& other);
+
+  std::uint64_t n() const { return n_; }
+  /// Mean from the corner and scatter, meters; of at least one point.
+  Gaussian gaussian(double step_m) const;
+
+  friend bool operator==(const VoxelMoments&, const VoxelMoments&) = default;
+
+ private:
+  std::uint64_t n_ = 0;
+  std::array<std::uint64_t, 3> sum_{};
+  std::array<WideSum, 6> products_{};  ///< xx, xy, xz, yy, yz, zz
+};
+
+}  // namespace cmap
