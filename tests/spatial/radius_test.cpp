@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <bit>
+#include <numeric>
 
 #include "cmap/geometry/color.hpp"
 #include "spatial/clouds.hpp"
@@ -102,6 +105,86 @@ TEST(NeighborhoodShapes, EqualBruteForce) {
     if (neighbors.size() <= 4) continue;
     ASSERT_NEAR(dets[i], covariance.determinant(), 1e-10 * covariance.diagonal().prod());
   }
+}
+
+/// Number of neighbors and bits of the determinant, by the points' own order.
+using Shapes = std::vector<std::pair<std::uint32_t, std::uint64_t>>;
+
+Shapes shapes_of(const PointCloud& cloud, double radius_m) {
+  const Bvh index(sort_points(cloud));
+  const NeighborhoodShape shape = neighborhood_shapes(index, radius_m);
+  const Array<std::uint32_t> n_neighbors = in_original_order(index.points, shape.n_neighbors);
+  const Array<double> dets = in_original_order(index.points, shape.covariance_det);
+  Shapes shapes;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    shapes.emplace_back(n_neighbors[i], std::bit_cast<std::uint64_t>(dets[i]));
+  }
+  return shapes;
+}
+
+/// A sheet whose coordinates are multiples of 2^-16 m: they stay exact when moved by up to 100 m.
+PointCloud rounded_sheet() {
+  PointCloud cloud = test::sheet_cloud(6000, 11, 8.0f);
+  for (Eigen::Vector3f& p : cloud.positions) p = (p * 0x1p16f).array().round().matrix() * 0x1p-16f;
+  return cloud;
+}
+
+TEST(NeighborhoodShapes, NoOrderOfThePointsChangesABit) {
+  const PointCloud cloud = test::sheet_cloud(6000, 9, 8.0f);
+  for (const double radius_m : {0.3, 1.0, 5.0}) {
+    const Shapes expected = shapes_of(cloud, radius_m);
+    PointCloud shuffled = cloud;
+    std::vector<std::size_t> order(cloud.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::shuffle(order, std::mt19937_64(10));
+    for (std::size_t i = 0; i < order.size(); ++i) shuffled.positions[i] = cloud.positions[order[i]];
+    const Shapes found = shapes_of(shuffled, radius_m);
+    for (std::size_t i = 0; i < order.size(); ++i) ASSERT_EQ(found[i], expected[order[i]]) << radius_m;
+  }
+}
+
+TEST(NeighborhoodShapes, NoOtherTreeChangesABit) {
+  const PointCloud cloud = rounded_sheet();
+  PointCloud with_far = cloud;
+  with_far.positions.push_back({-700, 12, 3});
+  with_far.positions.push_back({90, 2000, -5});
+  PointCloud moved = cloud;
+  for (Eigen::Vector3f& p : moved.positions) p += Eigen::Vector3f(37.125f, -81.75f, 3.0f);
+  for (const double radius_m : {0.3, 1.0}) {
+    const Shapes expected = shapes_of(cloud, radius_m);
+    Shapes found = shapes_of(with_far, radius_m);
+    found.resize(expected.size());
+    EXPECT_EQ(found, expected) << radius_m;
+    EXPECT_EQ(shapes_of(moved, radius_m), expected) << radius_m;
+  }
+}
+
+TEST(NeighborhoodShapes, WhatIsCutOffBeyondTheRadiusChangesNoBit) {
+  const PointCloud cloud = rounded_sheet();
+  const double radius_m = 0.5;
+  PointCloud part;
+  Shapes expected;
+  const Shapes shapes = shapes_of(cloud, radius_m);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (cloud.positions[i].x() < 2.0f) continue;
+    part.positions.push_back(cloud.positions[i]);
+    expected.push_back(shapes[i]);
+  }
+  const Shapes found = shapes_of(part, radius_m);
+  std::size_t n_whole = 0;
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    if (part.positions[i].x() < 2.0 + radius_m) continue;
+    ASSERT_EQ(found[i], expected[i]);
+    ++n_whole;
+  }
+  EXPECT_GT(n_whole, 3000U);
+}
+
+TEST(NeighborhoodShapes, ARadiusBeyondTheCloudIsThatOfTheCloud) {
+  const PointCloud cloud = test::uniform_cloud(300, 12, 2.0f);
+  EXPECT_EQ(shapes_of(cloud, 1e300), shapes_of(cloud, 4.0));
+  for (const auto& [n_neighbors, det] : shapes_of(cloud, 1e300)) EXPECT_EQ(n_neighbors, 299U);
+  for (const auto& [n_neighbors, det] : shapes_of(test::repeated(cloud, 2), 1e-300)) EXPECT_EQ(n_neighbors, 1U);
 }
 
 TEST(NeighborhoodShapes, TooFewNeighborsHaveNoShape) {

@@ -42,7 +42,9 @@ struct NeighborhoodShape {
 };
 
 /// Visits all neighbors at distance <= radius_m of every point, in double; file_step_m is the step in which the file
-/// held the coordinates, 0 where it is not known. Deterministic for any number of threads.
+/// held the coordinates, 0 where it is not known. Offsets and their products are summed in steps of 2^-64 of the power
+/// of two above the radius, or its square, without error: deterministic for any number of threads, and the same bits
+/// for any order of the points and whatever lies beyond the radius.
 NeighborhoodShape neighborhood_shapes(const Bvh& cloud, double radius_m, double file_step_m = 0.0);
 
 }  // namespace cmap
