@@ -3,8 +3,7 @@
 #include "cmap/metrics/catalog.hpp"
 #include "geometry/band_counts.hpp"
 
-namespace cmap {
-namespace catalog {
+namespace cmap::catalog {
 
 extern constinit const Metric rmse{
     .info = {.id = "rmse",
@@ -29,5 +28,4 @@ extern constinit const Metric rmse{
       return record.add("n_inliers", static_cast<std::uint64_t>(n_inliers));
     }};
 
-}  // namespace catalog
-}  // namespace cmap
+}  // namespace cmap::catalog
