@@ -75,11 +75,11 @@ TaskSums sum_task(std::span<const SlotRun> runs, RunReader& reader, const SideCo
   return task;
 }
 
-/// The columns of a side in the sums, by part.
+/// Columns of these names in the sums, by part.
 class ColumnTable {
  public:
-  ColumnTable(MetricSums& sums, const SideColumns& columns) {
-    for (const std::string& name : columns.names) {
+  ColumnTable(MetricSums& sums, std::span<const std::string> names) {
+    for (const std::string& name : names) {
       columns_.push_back(&sums.columns.try_emplace(name, std::vector<double>(sums.n_parts)).first->second);
     }
   }
@@ -134,7 +134,7 @@ void sum_points(std::span<const Metric* const> metrics, const MetricInputs& inpu
     RunReader reader(inputs, side, with_colors);
     sums[task] = sum_task(tasks[task], reader, columns);
   });
-  ColumnTable table(result, columns);
+  ColumnTable table(result, columns.names);
   merge(std::move(sums), table);
 }
 
@@ -165,10 +165,7 @@ void sum_voxels(std::span<const Metric* const> metrics, const MetricInputs& inpu
   const SideColumns columns =
       columns_of(metrics, inputs.settings, side, [](const Metric& metric) { return metric.each_voxel != nullptr; });
   for (const ColumnRange& range : columns.ranges) {
-    SideColumns own{{range}, {}};
-    const auto first = columns.names.begin() + static_cast<std::ptrdiff_t>(range.first);
-    own.names.assign(first, first + static_cast<std::ptrdiff_t>(range.size));
-    ColumnTable table(result, own);
+    ColumnTable table(result, std::span(columns.names).subspan(range.first, range.size));
     const std::vector<ColumnSums> by_part = voxel_sums(*range.metric, inputs, side, parts, range.size);
     for (std::size_t part = 0; part < by_part.size(); ++part) {
       table.set(static_cast<std::uint32_t>(part), numbers(by_part[part]));
