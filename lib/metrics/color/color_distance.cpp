@@ -22,6 +22,11 @@ void add_color_directions(Record& record, const PairSums& sums) {
   record.add("reference_to_estimate", mean_color_distance(sums.reference));
 }
 
+void add_color_counts(Record& record, const PairSums& sums) {
+  record.add("n_estimate", static_cast<std::uint64_t>(sums.estimate[kColoredPairsColumn]));
+  record.add("n_reference", static_cast<std::uint64_t>(sums.reference[kColoredPairsColumn]));
+}
+
 namespace catalog {
 
 extern constinit const Metric color_distance{
@@ -46,8 +51,7 @@ extern constinit const Metric color_distance{
           Record record{.value = mean_color_distance(sums), .parameters = {max_distance_parameter(settings.options)}};
           record.add("value_8bit", 255.0 * *record.value);
           add_color_directions(record, sums);
-          record.add("n_estimate", static_cast<std::uint64_t>(sums.estimate[kColoredPairsColumn]));
-          record.add("n_reference", static_cast<std::uint64_t>(sums.reference[kColoredPairsColumn]));
+          add_color_counts(record, sums);
           return record;
         },
     .finish =

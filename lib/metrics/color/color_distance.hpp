@@ -22,7 +22,10 @@ inline double mean_color_distance(const PairSums& sums) {
 /// Adds the color distances of the pairs that count: within color_max_distance_m, and not NaN.
 void add_color_distances(const PointRun& run, std::span<const double> color_distance, std::span<ExactSum> sums);
 
-/// Both means and their numbers.
+/// Adds both sides' means.
 void add_color_directions(Record& record, const PairSums& sums);
+
+/// Adds over how many pairs they are.
+void add_color_counts(Record& record, const PairSums& sums);
 
 }  // namespace cmap

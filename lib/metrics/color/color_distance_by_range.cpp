@@ -61,8 +61,7 @@ extern constinit const Metric color_distance_by_range{
             Record& record = ranges.emplace_back(Record{.value = mean_color_distance(of)});
             record.add("lo_m", kRangeEdges_m[range]).add("hi_m", kRangeEdges_m[range + 1]);
             add_color_directions(record, of);
-            record.add("n_estimate", static_cast<std::uint64_t>(of.estimate[kColoredPairsColumn]));
-            record.add("n_reference", static_cast<std::uint64_t>(of.reference[kColoredPairsColumn]));
+            add_color_counts(record, of);
           }
           return Record{}.add("per_range", std::move(ranges));
         },
