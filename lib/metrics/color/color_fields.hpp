@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <span>
+#include <vector>
 
 #include "cmap/core/warning.hpp"
+#include "cmap/geometry/order_statistics.hpp"
 #include "cmap/metrics/metric_inputs.hpp"
 #include "cmap/metrics/record.hpp"
 
@@ -15,6 +19,13 @@ inline void add_without_color(Record& record, const MetricInputs& inputs) {
   if (pair.estimate.n_without_color + pair.reference.n_without_color == 0) return;
   record.add("n_without_color_estimate", pair.estimate.n_without_color);
   record.add("n_without_color_reference", pair.reference.n_without_color);
+}
+
+/// Quantiles of the values that are not NaN; NaN of none.
+inline std::vector<double> quantiles_of_numbers(std::span<const double> values, std::span<const double> shares) {
+  std::vector<double> numbers;
+  std::ranges::copy_if(values, std::back_inserter(numbers), [](double v) { return !std::isnan(v); });
+  return quantiles(numbers, shares);
 }
 
 /// Said once, whichever of the color distances is asked for.

@@ -2,7 +2,6 @@
 
 #include "cmap/core/parallel.hpp"
 #include "cmap/geometry/color.hpp"
-#include "cmap/geometry/order_statistics.hpp"
 #include "cmap/metrics/metric.hpp"
 #include "color/color_fields.hpp"
 
@@ -25,11 +24,7 @@ Record mean_difference(std::span<const double> sums) {
 }
 
 void add_quantiles(Record& direction, const Array<double>& differences) {
-  std::vector<double> values;
-  for (const double v : differences) {
-    if (!std::isnan(v)) values.push_back(v);
-  }
-  const std::vector<double> ranked = quantiles(values, std::array{0.5, 0.95});
+  const std::vector<double> ranked = quantiles_of_numbers(differences, std::array{0.5, 0.95});
   direction.add("median", ranked[0]).add("p95", ranked[1]);
 }
 

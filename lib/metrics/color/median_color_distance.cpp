@@ -1,8 +1,6 @@
 #include <array>
-#include <cmath>
 
 #include "cmap/core/parallel.hpp"
-#include "cmap/geometry/order_statistics.hpp"
 #include "cmap/metrics/metric.hpp"
 #include "color/color_fields.hpp"
 
@@ -15,8 +13,7 @@ double median_distance(const NearestPairs& pairs) {
   parallel_chunks(pairs.size(), kLoopChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t slot = begin; slot < end; ++slot) distances[slot] = pairs.color_distance(slot);
   });
-  std::erase_if(distances, [](double d) { return std::isnan(d); });
-  return quantiles(distances, std::array{0.5}).front();
+  return quantiles_of_numbers(distances, std::array{0.5}).front();
 }
 
 }  // namespace
