@@ -5,39 +5,16 @@
 
 #include "cmap/geometry/order_statistics.hpp"
 #include "cmap/metrics/color_consistency.hpp"
+#include "color_moments.hpp"
 #include "voxels.hpp"
 
 namespace cmap {
 namespace {
 
-/// Sums of a voxel's colors in 1/255 units: exact for 8-bit colors.
-struct ColorSums {
-  std::uint32_t n = 0;
-  bool one_place = true;
-  Eigen::Vector3f place = Eigen::Vector3f::Zero();  ///< of the first point
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  double sum_sq = 0.0;
-
-  void add(const Eigen::Vector3d& color, const Eigen::Vector3f& offset) {
-    if (n == 0) place = offset;
-    one_place = one_place && offset == place;
-    ++n;
-    sum += color;
-    sum_sq += color.squaredNorm();
-  }
-
-  /// Trace of the covariance in unit RGB squared; 0 of one point.
-  double covariance_trace() const {
-    if (n < 2) return 0.0;
-    const auto count = static_cast<double>(n);
-    return std::max(0.0, (sum_sq - sum.squaredNorm() / count) / (count - 1.0)) / (255.0 * 255.0);
-  }
-};
-
 /// Adds a point's color, if it has one, to its voxel.
 auto color_adder(const IndexedMap& map) {
-  return [&map](ColorSums& sums, std::size_t slot, const Eigen::Vector3d&, const VoxelKey&) {
-    if (map.has_color_at(slot)) sums.add(map.color(slot), map.index.points.offset(slot));
+  return [&map](ColorMoments& colors, std::size_t slot, const Eigen::Vector3d&, const VoxelKey&) {
+    if (map.has_color_at(slot)) colors.add(color_at(map.colors, slot), map.index.points.offset(slot));
   };
 }
 
@@ -52,15 +29,15 @@ struct PartOfMap {
   ExactSum trace, trace_of_enough;
   std::vector<double> traces;  ///< of voxels of at least 2 points
 
-  void add(const ColorSums& voxel, std::uint64_t min_points) {
-    if (voxel.n == 0) return;  // of points without color
+  void add(const ColorMoments& voxel, std::uint64_t min_points) {
+    if (voxel.n() == 0) return;  // of points without color
     ++n_occupied;
-    n_singletons += voxel.n == 1 ? 1 : 0;
-    if (voxel.n == 1) return;
+    n_singletons += voxel.n() == 1 ? 1 : 0;
+    if (voxel.n() == 1) return;
     traces.push_back(voxel.covariance_trace());
     trace.add(traces.back());
-    n_one_place += voxel.one_place ? 1 : 0;
-    if (voxel.n < min_points) return;
+    n_one_place += voxel.one_place() ? 1 : 0;
+    if (voxel.n() < min_points) return;
     ++n_enough;
     trace_of_enough.add(traces.back());
   }
@@ -70,19 +47,19 @@ struct PartOfMap {
 
 std::vector<VoxelColors> voxel_colors(const IndexedMap& map, double voxel_m) {
   const VoxelFrame frame = color_frame(map, voxel_m);
-  const auto finish = [&](const VoxelKey& key, const ColorSums& sums) -> std::optional<VoxelColors> {
-    if (sums.n == 0) return std::nullopt;
-    return VoxelColors{frame.index(key), sums.n, sums.one_place, sums.covariance_trace()};
+  const auto finish = [&](const VoxelKey& key, const ColorMoments& sums) -> std::optional<VoxelColors> {
+    if (sums.n() == 0) return std::nullopt;
+    return VoxelColors{frame.index(key), sums.n(), sums.one_place(), sums.covariance_trace()};
   };
-  return collect_voxels<ColorSums>(map.index.points, frame, color_adder(map), finish);
+  return collect_voxels<ColorMoments>(map.index.points, frame, color_adder(map), finish);
 }
 
 ColorConsistency color_consistency(const IndexedMap& map, double voxel_m, std::uint64_t min_points) {
-  const auto use = [&](PartOfMap& part, const VoxelKey&, const ColorSums& sums) { part.add(sums, min_points); };
+  const auto use = [&](PartOfMap& part, const VoxelKey&, const ColorMoments& sums) { part.add(sums, min_points); };
   ColorConsistency all;
   std::vector<double> traces;
   for (const PartOfMap& part :
-       fold_voxels<PartOfMap, ColorSums>(map.index.points, color_frame(map, voxel_m), color_adder(map), use)) {
+       fold_voxels<PartOfMap, ColorMoments>(map.index.points, color_frame(map, voxel_m), color_adder(map), use)) {
     all.n_occupied.add(static_cast<double>(part.n_occupied));
     all.n_enough.add(static_cast<double>(part.n_enough));
     all.n_singletons.add(static_cast<double>(part.n_singletons));
