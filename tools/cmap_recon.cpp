@@ -47,7 +47,7 @@ constexpr const char* kExample =
 struct Arguments {
   std::string capture, output, preset = "default", config, reference, figure;
   std::vector<std::string> settings;
-  std::optional<cmap::RegistrationMethod> registration;
+  std::optional<cmap::SessionRegistrationMethod> registration;
   cmap::Stage stop_after = cmap::Stage::kFusion;
   std::optional<int> only_session;
   bool check = false, resume = false, session_maps = false, print_options = false;
@@ -65,15 +65,15 @@ cmap::EnumNames<cmap::Stage> named_stages() {
 }
 
 void add_options(cmap::CommandLine& line, Arguments& a) {
-  const cmap::EnumNames<cmap::RegistrationMethod>& methods = cmap::registration_method_names();
+  const cmap::EnumNames<cmap::SessionRegistrationMethod>& methods = cmap::registration_method_names();
   line.add("CAPTURE", a.capture, "DIR", "folder of a capture");
   line.add("-o,--output", a.output, "DIR", "folder for the results; made if need be").not_empty();
   line.add_flag("--check", a.check, "list all that is missing or odd in CAPTURE at once; writes nothing");
   line.add("--evaluate", a.reference, "REF", "reference map: also evaluation.json and evaluation.png").not_empty();
   line.add("--figure", a.figure, "FILE", "the sessions from above after each stage: .png, .jpg, .tif").not_empty();
   line.add_choice("--registration", a.registration,
-                  cmap::EnumNames<std::optional<cmap::RegistrationMethod>>(methods.begin(), methods.end()), "NAME",
-                  "prefusion (none), normal, paper or robust [robust]");
+                  cmap::EnumNames<std::optional<cmap::SessionRegistrationMethod>>(methods.begin(), methods.end()),
+                  "NAME", "prefusion (none), normal, paper or robust [robust]");
   line.add_word("--preset", a.preset, {"default", "paper"}, "NAME",
                 "default, or paper: the method as printed [default]");
   line.add("--config", a.config, "FILE", "JSON file of options, see --print-options").not_empty();

@@ -150,11 +150,11 @@ void apply(ReconstructionOptions& options, const Json& config) {
 
 }  // namespace
 
-const EnumNames<RegistrationMethod>& registration_method_names() {
-  static const EnumNames<RegistrationMethod> names{{RegistrationMethod::kPrefusion, "prefusion"},
-                                                   {RegistrationMethod::kNormal, "normal"},
-                                                   {RegistrationMethod::kPaper, "paper"},
-                                                   {RegistrationMethod::kRobust, "robust"}};
+const EnumNames<SessionRegistrationMethod>& registration_method_names() {
+  static const EnumNames<SessionRegistrationMethod> names{{SessionRegistrationMethod::kPrefusion, "prefusion"},
+                                                          {SessionRegistrationMethod::kNormal, "normal"},
+                                                          {SessionRegistrationMethod::kPaper, "paper"},
+                                                          {SessionRegistrationMethod::kRobust, "robust"}};
   return names;
 }
 
@@ -187,7 +187,7 @@ void apply_reconstruction_preset(ReconstructionOptions& options, const std::stri
   if (name != "paper") throw UsageError(fmt::format("\"{}\" is no preset: default, paper", name));
   options.input.pairing = PosePairing::kNearest;
   options.prefusion = PreFusionOptions::paper();
-  options.registration.method = RegistrationMethod::kPaper;
+  options.registration.method = SessionRegistrationMethod::kPaper;
   options.graph.lidar_priors = false;
 }
 

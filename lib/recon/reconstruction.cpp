@@ -123,7 +123,7 @@ std::string_view stage_name(Stage stage) { return kStageNames.at(static_cast<std
 
 CaptureParts parts_needed(const ReconstructionOptions& options, Stage last) {
   CaptureParts parts{.images = Want::kNo, .scans = Want::kYes, .imu = Want::kNo};
-  if (options.registration.method == RegistrationMethod::kPrefusion) parts.scans = Want::kIfUsable;
+  if (options.registration.method == SessionRegistrationMethod::kPrefusion) parts.scans = Want::kIfUsable;
   if (last < Stage::kRegistration) parts.scans = Want::kNo;
   return parts;
 }

@@ -61,7 +61,7 @@ TEST(Execution, TwoEvaluationsAtATimeDoNotDisturbEachOther) {
 
 TEST(Execution, TheProtocolTellsItsOwnStagesAndThoseOfTheEvaluation) {
   EvaluationOptions options = options_for({"chamfer"});
-  options.align = "icp";
+  options.align = test::aligner("icp");
   const PointCloud map = test::uniform_cloud(2000, 1);
   Told told;
   const Evaluation found = evaluate_by_protocol(map, map, options, {}, told.execution(1));

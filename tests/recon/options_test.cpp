@@ -63,8 +63,9 @@ TEST(ReconstructionOptions, ThePaperDiffersInWhatItsTextSays) {
 TEST(ReconstructionOptions, MethodsHaveTheNamesOfTheCommandLine) {
   ReconstructionOptions options;
   for (const auto& [name, method] :
-       {std::pair("prefusion", RegistrationMethod::kPrefusion), std::pair("normal", RegistrationMethod::kNormal),
-        std::pair("paper", RegistrationMethod::kPaper), std::pair("robust", RegistrationMethod::kRobust)}) {
+       {std::pair("prefusion", SessionRegistrationMethod::kPrefusion),
+        std::pair("normal", SessionRegistrationMethod::kNormal), std::pair("paper", SessionRegistrationMethod::kPaper),
+        std::pair("robust", SessionRegistrationMethod::kRobust)}) {
     set_reconstruction_option(options, std::string("registration=") + name);
     EXPECT_EQ(options.registration.method, method);
   }

@@ -80,7 +80,7 @@ TEST(RegistrationStage, WithoutScansPrefusionStaysUnmeasured) {
   Capture capture = room.open();
   capture.scans.clear();
   RegistrationOptions options;
-  options.method = RegistrationMethod::kPrefusion;
+  options.method = SessionRegistrationMethod::kPrefusion;
   const std::vector<SessionState> sessions = displaced();
   const RegistrationOut out = run_registration({capture, sessions}, {}, options);
   for (std::size_t k = 0; k < sessions.size(); ++k) {

@@ -31,7 +31,7 @@ PointCloud yard(double step_m) {
   return cloud;
 }
 
-RegistrationOptions by(RegistrationMethod method, double voxel_m) {
+RegistrationOptions by(SessionRegistrationMethod method, double voxel_m) {
   RegistrationOptions options;
   options.method = method;
   options.voxel_m = voxel_m;
@@ -60,7 +60,8 @@ TEST(Registration, RobustFindsTheScale) {
   }
   const Similarity error = similarity(1.01, {0.1, -0.1, 0.05}, 0.009);
   const SessionCloud session = session_of(transformed(lidar, error.matrix()));
-  const SessionRegistration found = register_session(session, lidar, error, by(RegistrationMethod::kRobust, 0.2), 0.3);
+  const SessionRegistration found =
+      register_session(session, lidar, error, by(SessionRegistrationMethod::kRobust, 0.2), 0.3);
   EXPECT_TRUE(found.accepted);
   // Exact but for the thinning to 0.2 and 0.1 m, which merges a few neighbors, and the last beta of 1e-4.
   EXPECT_NEAR(found.scale_change * 1.01, 1.0, 2e-4);
@@ -73,7 +74,7 @@ TEST(Registration, PrefusionMovesNothingAndSaysHowItFits) {
   const Similarity error = similarity(1.0, {0.3, 0, 0}, 0.0);
   const SessionCloud session = session_of(transformed(yard(0.2), error.matrix()));
   const SessionRegistration found =
-      register_session(session, yard(0.2), error, by(RegistrationMethod::kPrefusion, 0.2), 0.3);
+      register_session(session, yard(0.2), error, by(SessionRegistrationMethod::kPrefusion, 0.2), 0.3);
   EXPECT_EQ(found.scale_change, 1.0);
   EXPECT_EQ(found.T_world_session.translation, error.translation);
   EXPECT_GT(found.rmse_m, 0.0);
@@ -89,10 +90,11 @@ TEST(Registration, RobustNeverFitsWorse) {
   add_wall(corridor, {20, 0, 0}, {0, 2, 0}, {0, 0, 2.5}, 0.1);
   for (const double voxel_m : {0.1, 0.3, 0.6}) {
     const SessionCloud session = session_of(corridor);
-    const auto run = [&](RegistrationMethod method) {
+    const auto run = [&](SessionRegistrationMethod method) {
       return register_session(session, corridor, {}, by(method, voxel_m), 0.1);
     };
-    const SessionRegistration before = run(RegistrationMethod::kPrefusion), after = run(RegistrationMethod::kRobust);
+    const SessionRegistration before = run(SessionRegistrationMethod::kPrefusion),
+                              after = run(SessionRegistrationMethod::kRobust);
     const auto cost = [&](const SessionRegistration& r) {
       return r.overlap * r.rmse_m * r.rmse_m + (1.0 - r.overlap) * 9.0 * voxel_m * voxel_m;
     };
@@ -104,15 +106,15 @@ TEST(Registration, RobustNeverFitsWorse) {
 TEST(Registration, WithoutLidarOrPointsTheSessionStays) {
   const Similarity T = similarity(3.0, {1, 2, 3}, 0.1);
   const SessionRegistration alone =
-      register_session(session_of(yard(1.0)), {}, T, by(RegistrationMethod::kRobust, 0.2), 0.1);
+      register_session(session_of(yard(1.0)), {}, T, by(SessionRegistrationMethod::kRobust, 0.2), 0.1);
   EXPECT_FALSE(alone.accepted);
   EXPECT_EQ(alone.T_world_session.translation, T.translation);
   EXPECT_EQ(alone.flags.size(), 1u);
-  EXPECT_FALSE(register_session({}, yard(1.0), T, by(RegistrationMethod::kRobust, 0.2), 0.1).accepted);
+  EXPECT_FALSE(register_session({}, yard(1.0), T, by(SessionRegistrationMethod::kRobust, 0.2), 0.1).accepted);
   PointCloud elsewhere = yard(0.2);
   elsewhere.origin << 500, 0, 0;
   const SessionRegistration apart =
-      register_session(session_of(yard(0.2)), elsewhere, T, by(RegistrationMethod::kRobust, 0.2), 0.1);
+      register_session(session_of(yard(0.2)), elsewhere, T, by(SessionRegistrationMethod::kRobust, 0.2), 0.1);
   EXPECT_FALSE(apart.accepted);
   EXPECT_FALSE(apart.flags.empty());
   EXPECT_EQ(apart.T_world_session.translation, T.translation);

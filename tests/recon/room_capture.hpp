@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "cmap/io/capture.hpp"
-#include "cmap/io/lidar_scan.hpp"
-#include "cmap/io/session_predictions.hpp"
+#include "cmap/io/lidar_scan_file.hpp"
+#include "cmap/io/session_file.hpp"
 #include "cmap/recon/placed_session.hpp"
 #include "cmap/recon/reconstruction.hpp"
 #include "io/io_testing.hpp"

@@ -28,7 +28,7 @@ struct ReconstructionOptions {
 OptionFields option_fields(ReconstructionOptions& options);
 
 /// As the option `registration` has them.
-const EnumNames<RegistrationMethod>& registration_method_names();
+const EnumNames<SessionRegistrationMethod>& registration_method_names();
 
 /// Sets the options that a JSON object names (comments allowed). Throws UsageError naming `source` and the key:
 /// unknown, wrong type, out of range.

@@ -12,7 +12,7 @@
 namespace cmap {
 
 /// How sessions are moved onto the LiDAR (PIPELINE, "Registration").
-enum class RegistrationMethod {
+enum class SessionRegistrationMethod {
   kPrefusion,  ///< not at all: the result of pre-fusion is kept
   kNormal,     ///< Sim(3)-ICP without an expected scale, fixed gate, no crop
   kPaper,      ///< constant beta, fixed gate, no crop
@@ -21,7 +21,7 @@ enum class RegistrationMethod {
 
 /// Gates are in voxels. Of kNormal and kPaper gate and beta stay as they are at first (beta 0 of kNormal).
 struct RegistrationOptions {
-  RegistrationMethod method = RegistrationMethod::kRobust;
+  SessionRegistrationMethod method = SessionRegistrationMethod::kRobust;
   double voxel_m = 0.2;            ///< what the session is thinned to; the LiDAR's points to half of it
   double thinning = 0.5;           ///< before, each frame's points are thinned to this share of it
   double first_gate = 10.0;        ///< farther pairs are no matches

@@ -16,9 +16,9 @@ double sq_match_gate_m2(const RegistrationOptions& options) {
 }
 
 Sim3IcpOptions icp_options(const RegistrationOptions& o, double sigma_m) {
-  const bool is_robust = o.method == RegistrationMethod::kRobust;
+  const bool is_robust = o.method == SessionRegistrationMethod::kRobust;
   Sim3IcpOptions options = is_robust ? Sim3IcpOptions::robust(o.voxel_m, sigma_m) : Sim3IcpOptions::paper(o.voxel_m);
-  options.beta0 = options.beta1 = o.method == RegistrationMethod::kNormal ? 0.0 : o.first_beta;
+  options.beta0 = options.beta1 = o.method == SessionRegistrationMethod::kNormal ? 0.0 : o.first_beta;
   options.gate0_m = options.gate1_m = o.first_gate * o.voxel_m;
   options.iterations = o.iterations;
   options.neighbors = o.neighbors;
@@ -62,7 +62,7 @@ SessionRegistration kept(const Similarity& T_world_session, std::string why) {
 SessionRegistration moved_session(const SessionCloud& session, const PointCloud& lidar,
                                   const Similarity& T_world_session, const RegistrationOptions& options,
                                   double sigma_m) {
-  const bool with_weights = options.method == RegistrationMethod::kRobust;
+  const bool with_weights = options.method == SessionRegistrationMethod::kRobust;
   try {
     const Sim3Alignment found =
         sim3_icp(session.cloud, lidar, Eigen::Matrix4d::Identity(), icp_options(options, sigma_m),
@@ -95,12 +95,12 @@ SessionRegistration register_session(const SessionCloud& session, const PointClo
   SessionRegistration before;
   before.T_world_session = T_world_session;
   measure_fit(session.cloud, target, options, before);
-  if (options.method == RegistrationMethod::kPrefusion) return before;
+  if (options.method == SessionRegistrationMethod::kPrefusion) return before;
   SessionRegistration result = moved_session(session, lidar, T_world_session, options, sigma_m);
   const Similarity step = result.T_world_session * T_world_session.inverse();
   measure_fit(transformed(session.cloud, step.matrix()), target, options, result);
   const bool is_better = truncated_cost_m2(result, options) < truncated_cost_m2(before, options);
-  if (options.method != RegistrationMethod::kRobust || !result.accepted || is_better) return result;
+  if (options.method != SessionRegistrationMethod::kRobust || !result.accepted || is_better) return result;
   before.accepted = false;
   before.flags.push_back("registration fits no better than pre-fusion, which is kept");
   return before;

@@ -17,7 +17,7 @@ LidarMap lidar_around(const Capture& capture, const SessionPredictions& session,
     return lidar_map(capture, session.frames.front().time_s, session.frames.back().time_s, options.lidar,
                      input.max_gap_s);
   } catch (const InputError& error) {
-    if (options.method != RegistrationMethod::kPrefusion) throw;
+    if (options.method != SessionRegistrationMethod::kPrefusion) throw;
     outcome.flags.push_back(fmt::format("not compared with the LiDAR: {}", error.what()));
     return {};
   }
