@@ -32,8 +32,7 @@ using cmap::ExitCode;
 
 constexpr const char* kDescription =
     "Evaluates an estimated point-cloud map against a reference: color, geometry and distribution metrics. Of one map\n"
-    "alone, what needs no reference: color consistency, mean map entropy, point spacing.\n"
-    "Reads PLY, PCD, LAS, PTS, PTX, text, NPY, NPZ, KITTI .bin, COLMAP points3D, OpenSfM and OBJ without faces.";
+    "alone, what needs no reference: color consistency, mean map entropy, point spacing. Reads\n";
 
 constexpr const char* kExample =
     "Examples:\n"
@@ -304,7 +303,8 @@ ExitCode run(const Arguments& arguments, const std::string& command) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  cmap::CommandLine line("cmap_eval", kDescription, std::string(kExample) + cmap::kDash);
+  cmap::CommandLine line("cmap_eval", std::string(kDescription) + cmap::readable_formats() + ".",
+                         std::string(kExample) + cmap::kDash);
   Arguments arguments;
   add_options(line, arguments);
   return cmap::run_program(line, argc, argv, [&] { return run(arguments, cmap::shell_command({argv, argv + argc})); });

@@ -10,31 +10,20 @@
 
 #include "captures/capture_json.hpp"
 #include "captures/session_arrays.hpp"
-#include "clouds/file_format.hpp"
-#include "clouds/format_readers.hpp"
+#include "clouds/cloud_format.hpp"
 #include "cmap/core/error.hpp"
 #include "poses/trajectory_rows.hpp"
 #include "poses/transform_numbers.hpp"
 
 namespace cmap::fuzz {
 
-using Reader = PointCloud (*)(ByteSource&, FileInfo&);
-
-/// Whatever the content says it is.
-inline PointCloud read_any(ByteSource& source, FileInfo& info) { return detect_format(source).read(source, info, {}); }
-
-inline PointCloud read_las_as_it_is(ByteSource& source, FileInfo& info) { return read_las(source, info); }
-inline PointCloud read_las_classes(ByteSource& source, FileInfo& info) {
-  return read_las(source, info, {.classes = {0, 2}});
-}
-
-/// One input for one reader, which must read it or refuse it. The small blocks of a source in memory make the input
-/// cross their borders.
-inline void try_reader(Reader reader, std::span<const std::byte> input) {
+/// One input for one format's reader, which must read it or refuse it. The small blocks of a source in memory make the
+/// input cross their borders.
+inline void try_reader(const CloudFormat& format, std::span<const std::byte> input, const ReadOptions& options) {
   try {
     ByteSource source("input", input);
     FileInfo info;
-    const PointCloud cloud = reader(source, info);
+    const PointCloud cloud = format.read(source, info, options);
     if (cloud.size() != info.finite_points || cloud.size() == 0) __builtin_trap();
     for (const Eigen::Vector3f& p : cloud.positions) {
       if (!p.allFinite()) __builtin_trap();
@@ -44,6 +33,23 @@ inline void try_reader(Reader reader, std::span<const std::byte> input) {
   } catch (const InputError&) {
     // a refusal is an answer
   }
+}
+
+inline void try_format(const CloudFormat& format, std::span<const std::byte> input) {
+  try_reader(format, input, {});
+  if (format.has_classes) try_reader(format, input, {.classes = {0, 2}});
+}
+
+/// Whatever the content says it is.
+inline void try_any(std::span<const std::byte> input) {
+  const CloudFormat* format = nullptr;
+  try {
+    ByteSource source("input", input);
+    format = &detect_format(source);
+  } catch (const InputError&) {
+    return;
+  }
+  try_reader(*format, input, {});
 }
 
 /// A session's arrays in an NPZ file, which must be read or refused, and then hold nothing but numbers.
@@ -111,11 +117,6 @@ inline void try_trajectory(std::span<const std::byte> input) {
   } catch (const InputError&) {
     // a refusal is an answer
   }
-}
-
-inline int run(Reader reader, const std::uint8_t* data, std::size_t size) {
-  try_reader(reader, std::as_bytes(std::span(data, size)));
-  return 0;
 }
 
 }  // namespace cmap::fuzz

@@ -4,19 +4,15 @@
 namespace cmap::testing {
 namespace {
 
-constexpr std::pair<const char*, fuzz::Reader> kReaders[] = {{"any", fuzz::read_any},
-                                                             {"colmap_binary", read_colmap_binary},
-                                                             {"kitti_bin", read_kitti_bin},
-                                                             {"colmap_text", read_colmap_text},
-                                                             {"las", fuzz::read_las_as_it_is},
-                                                             {"npy", read_npy_cloud},
-                                                             {"npz", read_npz_cloud},
-                                                             {"obj", read_obj_points},
-                                                             {"opensfm", read_opensfm},
-                                                             {"pcd", read_pcd},
-                                                             {"ply", read_ply},
-                                                             {"ptx", read_ptx},
-                                                             {"text", read_text}};
+/// The folder of a format's seeds: "COLMAP text" has colmap_text.
+std::string folder_of(const CloudFormat& format) {
+  std::string folder;
+  for (const char c : format.name) {
+    if (std::isalnum(static_cast<unsigned char>(c))) folder += static_cast<char>(std::tolower(c));
+    if (c == ' ') folder += '_';
+  }
+  return folder;
+}
 
 /// Every input that the fuzzers start from or once found, through every reader, with every compiler.
 std::size_t replay(const std::filesystem::path& folder) {
@@ -25,7 +21,8 @@ std::size_t replay(const std::filesystem::path& folder) {
     if (!entry.is_regular_file() || entry.path().filename() == ".gitkeep") continue;
     const std::string bytes = read_bytes(entry.path());
     SCOPED_TRACE(entry.path());
-    for (const auto& [name, reader] : kReaders) fuzz::try_reader(reader, std::as_bytes(std::span(bytes)));
+    for (const CloudFormat* format : cloud_formats()) fuzz::try_format(*format, std::as_bytes(std::span(bytes)));
+    fuzz::try_any(std::as_bytes(std::span(bytes)));
     fuzz::try_session(std::as_bytes(std::span(bytes)));
     fuzz::try_capture(std::as_bytes(std::span(bytes)));
     fuzz::try_transform(std::as_bytes(std::span(bytes)));
@@ -46,18 +43,18 @@ TEST(FuzzRegressions, CorpusAndRegressionsAreReadOrRefused) {
 }
 
 TEST(FuzzRegressions, EverySeedIsReadByItsOwnReader) {
-  for (const auto& [name, reader] : kReaders) {
-    for (const auto& entry : std::filesystem::directory_iterator(fuzz_folder() / "corpus" / name)) {
+  for (const CloudFormat* format : cloud_formats()) {
+    for (const auto& entry : std::filesystem::directory_iterator(fuzz_folder() / "corpus" / folder_of(*format))) {
       ByteSource source(entry.path());
       FileInfo info;
-      EXPECT_GT(reader(source, info).size(), 0U) << entry.path();
+      EXPECT_GT(format->read(source, info, {}).size(), 0U) << entry.path();
     }
   }
 }
 
 TEST(FuzzRegressions, EverySessionAndCaptureSeedIsRead) {
   const auto bytes_of = [](std::string_view name) { return read_bytes(fuzz_folder() / "corpus" / name); };
-  for (const std::string_view name : {"npz/predictions", "npz/predictions_deflated"}) {
+  for (const std::string_view name : {"session/predictions", "session/predictions_deflated"}) {
     const std::string bytes = bytes_of(name);
     SessionPredictions session;
     std::size_t frames = 0;
@@ -86,14 +83,14 @@ TEST(FuzzRegressions, EveryTransformAndTrajectorySeedIsRead) {
 
 /// Every seed cut at every length, and with every byte changed: what a fuzzer does first.
 TEST(FuzzRegressions, CutAndChangedSeedsAreReadOrRefused) {
-  for (const auto& [name, reader] : kReaders) {
-    for (const auto& entry : std::filesystem::directory_iterator(fuzz_folder() / "corpus" / name)) {
+  for (const CloudFormat* format : cloud_formats()) {
+    for (const auto& entry : std::filesystem::directory_iterator(fuzz_folder() / "corpus" / folder_of(*format))) {
       const std::string seed = read_bytes(entry.path());
       for (std::size_t i = 0; i < seed.size(); ++i) {
         std::string changed = seed;
         changed[i] = static_cast<char>(~changed[i]);
-        fuzz::try_reader(reader, std::as_bytes(std::span(changed)));
-        fuzz::try_reader(reader, std::as_bytes(std::span(seed)).first(i + 1));
+        fuzz::try_format(*format, std::as_bytes(std::span(changed)));
+        fuzz::try_format(*format, std::as_bytes(std::span(seed)).first(i + 1));
       }
     }
   }
@@ -101,7 +98,7 @@ TEST(FuzzRegressions, CutAndChangedSeedsAreReadOrRefused) {
 
 TEST(FuzzRegressions, CutAndChangedSessionsCapturesAndPosesAreReadOrRefused) {
   for (const auto& [name, attempt] :
-       {std::pair{"npz", &fuzz::try_session}, std::pair{"capture", &fuzz::try_capture},
+       {std::pair{"session", &fuzz::try_session}, std::pair{"capture", &fuzz::try_capture},
         std::pair{"transform", &fuzz::try_transform}, std::pair{"trajectory", &fuzz::try_trajectory}}) {
     for (const auto& entry : std::filesystem::directory_iterator(fuzz_folder() / "corpus" / name)) {
       const std::string seed = read_bytes(entry.path());

@@ -1,4 +1,3 @@
-#include "clouds/format_readers.hpp"
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {

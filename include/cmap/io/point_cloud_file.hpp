@@ -48,14 +48,17 @@ struct PointCloudFile {
   FileInfo info;
 };
 
-/// Reads a point cloud of any format of the table in lib/io/file_format.cpp, recognized by content first, extension
-/// second. Points that are not finite are dropped and counted, and so are those that no sensor measured (a coordinate
-/// of 1e9 or more; many points exactly at 0 0 0). What the color numbers mean is decided over the whole file and said
-/// in `info`: 8- and 16-bit colors stay integers, others become floats in [0,1], a point without one (NaN) keeps NaN;
-/// nothing but black is no color. The origin is choose_origin() of the bounds. Float files near zero keep their floats
-/// exactly; a pipe is read into memory. Thread-safe. Throws InputError naming file, place (line, byte, point or field)
-/// and reason: missing or unreadable file, unknown format, malformed or truncated content, bytes left over, a number
-/// that no color has, no finite point.
+/// What can be read, for people: "PLY, PCD, ... and KITTI .bin".
+std::string readable_formats();
+
+/// Reads a point cloud of any format that readable_formats() names (FORMATS, "Point clouds"), recognized by content
+/// first, extension second. Points that are not finite are dropped and counted, and so are those that no sensor
+/// measured (a coordinate of 1e9 or more; many points exactly at 0 0 0). What the color numbers mean is decided over
+/// the whole file and said in `info`: 8- and 16-bit colors stay integers, others become floats in [0,1], a point
+/// without one (NaN) keeps NaN; nothing but black is no color. The origin is choose_origin() of the bounds. Float files
+/// near zero keep their floats exactly; a pipe is read into memory. Thread-safe. Throws InputError naming file, place
+/// (line, byte, point or field) and reason: missing or unreadable file, unknown format, malformed or truncated content,
+/// bytes left over, a number that no color has, no finite point.
 PointCloudFile read_point_cloud(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Two files at once, each in a thread of its own. Throws what the first would throw, else the second.

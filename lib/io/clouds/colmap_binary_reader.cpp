@@ -6,7 +6,7 @@
 
 #include "bytes/little_endian.hpp"
 #include "clouds/cloud_builder.hpp"
-#include "clouds/format_readers.hpp"
+#include "clouds/cloud_format.hpp"
 
 namespace cmap {
 namespace {
@@ -34,8 +34,6 @@ PointColumns columns_of_points(const std::byte* data) {
   }
   return columns;
 }
-
-}  // namespace
 
 bool is_colmap_binary(const FileStart& start) {
   if (start.name == "points3d.bin") return true;
@@ -85,5 +83,14 @@ PointCloud read_colmap_binary(ByteSource& source, FileInfo& info) {
   if (source.remaining() > 0) source.fail("{} bytes left over after its {} points", source.remaining(), n);
   return builder.finish(info);
 }
+
+}  // namespace
+
+namespace formats {
+
+extern constinit const CloudFormat colmap_binary{
+    .name = "COLMAP binary", .by_content = is_colmap_binary, .read = without_options<read_colmap_binary>};
+
+}  // namespace formats
 
 }  // namespace cmap

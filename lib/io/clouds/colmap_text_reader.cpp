@@ -3,7 +3,7 @@
 #include <set>
 
 #include "bytes/ascii_rows.hpp"
-#include "clouds/format_readers.hpp"
+#include "clouds/cloud_format.hpp"
 #include "cmap/io/number_text.hpp"
 
 namespace cmap {
@@ -74,8 +74,6 @@ bool rows_fit(const FileStart& start) {
   return ids.size() >= 3 && n_fraction > 0 && n_track >= 2 * ids.size();
 }
 
-}  // namespace
-
 bool is_colmap_text(const FileStart& start) {
   if (!start.text) return false;
   for (const std::string_view line : start.lines(10)) {
@@ -126,5 +124,16 @@ PointCloud read_colmap_text(ByteSource& source, FileInfo& info) {
   }
   return builder.finish(info);
 }
+
+}  // namespace
+
+namespace formats {
+
+extern constinit const CloudFormat colmap_text{.name = "COLMAP text",
+                                               .listed = "COLMAP points3D",
+                                               .by_content = is_colmap_text,
+                                               .read = without_options<read_colmap_text>};
+
+}  // namespace formats
 
 }  // namespace cmap

@@ -5,9 +5,13 @@
 #include <algorithm>
 
 #include "bytes/little_endian.hpp"
-#include "clouds/format_readers.hpp"
+#include "clouds/cloud_format.hpp"
 
 namespace cmap {
+namespace formats {
+extern const CloudFormat opensfm;
+}
+
 namespace {
 
 using namespace std::string_view_literals;
@@ -150,7 +154,7 @@ Answer zip(const FileStart& start) {
 
 Answer json_or_xml(const FileStart& start) {
   const std::size_t first = start.bytes.find_first_not_of(" \t\r\n");
-  if (!start.text || first == std::string_view::npos || is_opensfm(start)) return std::nullopt;
+  if (!start.text || first == std::string_view::npos || formats::opensfm.by_content(start)) return std::nullopt;
   const std::string_view content = start.bytes.substr(first);
   if (content.starts_with("{") || content.starts_with("[{") || content.starts_with("[\n")) {
     // The description of an unpacked .sog.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "clouds/format_readers.hpp"
+#include "clouds/cloud_format.hpp"
 #include "clouds/record_reader.hpp"
 
 namespace cmap {
@@ -113,8 +113,6 @@ RecordLayout record_layout(const RawLayout& raw) {
   return layout;
 }
 
-}  // namespace
-
 PointCloud read_kitti_bin(ByteSource& source, FileInfo& info) {
   const RawLayout& raw = find_layout(source);
   info.format = raw.name;
@@ -125,5 +123,17 @@ PointCloud read_kitti_bin(ByteSource& source, FileInfo& info) {
   read_records(source, n, layout, builder);
   return builder.finish(info);
 }
+
+}  // namespace
+
+namespace formats {
+
+extern constinit const CloudFormat kitti_bin{
+    .name = "KITTI .bin",
+    .listed = "KITTI .bin",
+    .by_name = [](const FileStart& start) { return start.extension == ".bin"; },
+    .read = without_options<read_kitti_bin>};
+
+}  // namespace formats
 
 }  // namespace cmap

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "bytes/ascii_rows.hpp"
-#include "clouds/format_readers.hpp"
+#include "clouds/cloud_format.hpp"
 
 namespace cmap {
 namespace {
@@ -54,8 +54,6 @@ std::array<double, 3> triple(const ByteSource& source, const std::string& id, co
   return triple;
 }
 
-}  // namespace
-
 bool is_opensfm(const FileStart& start) {
   const std::size_t first = start.bytes.find_first_not_of(" \t\r\n");
   return start.text && first != std::string_view::npos && start.bytes[first] == '[' &&
@@ -75,5 +73,16 @@ PointCloud read_opensfm(ByteSource& source, FileInfo& info) {
   stage.flush();
   return builder.finish(info);
 }
+
+}  // namespace
+
+namespace formats {
+
+extern constinit const CloudFormat opensfm{.name = "OpenSfM",
+                                           .listed = "OpenSfM",
+                                           .by_content = is_opensfm,
+                                           .read = without_options<read_opensfm>};
+
+}  // namespace formats
 
 }  // namespace cmap

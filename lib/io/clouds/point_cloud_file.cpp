@@ -1,7 +1,6 @@
 #include "cmap/io/point_cloud_file.hpp"
 
-#include "clouds/file_format.hpp"
-#include "clouds/format_readers.hpp"
+#include "clouds/cloud_format.hpp"
 #include "cmap/core/parallel.hpp"
 #include "cmap/io/byte_source.hpp"
 

@@ -2,7 +2,7 @@
 #include <bit>
 #include <cmath>
 
-#include "clouds/format_readers.hpp"
+#include "clouds/cloud_format.hpp"
 #include "clouds/las/las_header.hpp"
 #include "clouds/las/las_records.hpp"
 #include "clouds/las/las_selection.hpp"
@@ -59,8 +59,6 @@ void check_rest(const ByteSource& source, const LasHeader& header, const LasReco
   info.warnings.push_back({"bytes_left", fmt::format("{} bytes behind the points are not read{}", rest, more)});
 }
 
-}  // namespace
-
 PointCloud read_las(ByteSource& source, FileInfo& info, const ReadOptions& options) {
   const LasHeader header = read_las_header(source);
   info.format = fmt::format("LAS 1.{} format {}", header.version_minor, header.point_format);
@@ -82,5 +80,18 @@ PointCloud read_las(ByteSource& source, FileInfo& info, const ReadOptions& optio
   refuse_degrees(source, units, cloud, info);
   return cloud;
 }
+
+}  // namespace
+
+namespace formats {
+
+extern constinit const CloudFormat las{
+    .name = "LAS",
+    .listed = "LAS",
+    .by_content = [](const FileStart& start) { return start.bytes.starts_with("LASF"); },
+    .read = read_las,
+    .has_classes = true};
+
+}  // namespace formats
 
 }  // namespace cmap

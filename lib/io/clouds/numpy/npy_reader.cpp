@@ -1,7 +1,8 @@
-#include "clouds/format_readers.hpp"
+#include "clouds/cloud_format.hpp"
 #include "clouds/numpy/npy_points.hpp"
 
 namespace cmap {
+namespace {
 
 PointCloud read_npy_cloud(ByteSource& source, FileInfo& info) {
   const NpyArray array = read_npy(source);
@@ -11,5 +12,17 @@ PointCloud read_npy_cloud(ByteSource& source, FileInfo& info) {
   append_points(points, 0, points.n, builder);
   return builder.finish(info);
 }
+
+}  // namespace
+
+namespace formats {
+
+extern constinit const CloudFormat npy{
+    .name = "NPY",
+    .listed = "NPY",
+    .by_content = [](const FileStart& start) { return start.bytes.starts_with("\x93NUMPY"); },
+    .read = without_options<read_npy_cloud>};
+
+}  // namespace formats
 
 }  // namespace cmap

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <deque>
 
-#include "clouds/format_readers.hpp"
+#include "clouds/cloud_format.hpp"
 #include "clouds/numpy/npz_choice.hpp"
 #include "clouds/numpy/npz_colors.hpp"
 #include "clouds/point_names.hpp"
@@ -143,13 +143,23 @@ class NpzCloud {
   NpyPoints points_;
 };
 
-}  // namespace
-
 PointCloud read_npz_cloud(ByteSource& source, FileInfo& info) {
   Array<std::byte> bytes(source.size());
   source.read(bytes, "the file");
   const ArrayStore store(source.name(), bytes);
   return NpzCloud(source, store, info).read();
 }
+
+}  // namespace
+
+namespace formats {
+
+extern constinit const CloudFormat npz{
+    .name = "NPZ",
+    .listed = "NPZ",
+    .by_content = [](const FileStart& start) { return start.bytes.starts_with("PK\x03\x04"); },
+    .read = without_options<read_npz_cloud>};
+
+}  // namespace formats
 
 }  // namespace cmap

@@ -2,7 +2,7 @@
 #include <bit>
 
 #include "bytes/ascii_rows.hpp"
-#include "clouds/format_readers.hpp"
+#include "clouds/cloud_format.hpp"
 #include "clouds/pcd/pcd_body.hpp"
 #include "clouds/pcd/pcd_header.hpp"
 #include "clouds/record_reader.hpp"
@@ -40,7 +40,14 @@ void check_bytes_left_over(ByteSource& source, std::uint64_t points, FileInfo& i
   if (n > 2) info.notes.push_back(fmt::format("{} bytes of nothing follow the points; not read", n));
 }
 
-}  // namespace
+/// A PCD file may start with comments and with any of its keywords.
+bool is_pcd(const FileStart& start) {
+  for (const std::string_view line : start.lines(100)) {
+    if (line.starts_with("# .PCD") || line.starts_with("VERSION ") || line.starts_with("FIELDS ")) return true;
+    if (!line.starts_with("#") && line.find_first_not_of(" \t") != std::string_view::npos) return false;
+  }
+  return false;
+}
 
 PointCloud read_pcd(ByteSource& source, FileInfo& info) {
   LineReader lines(source);
@@ -72,5 +79,17 @@ PointCloud read_pcd(ByteSource& source, FileInfo& info) {
   read_compressed(source, header, layout, schema, builder);
   return builder.finish(info);
 }
+
+}  // namespace
+
+namespace formats {
+
+extern constinit const CloudFormat pcd{.name = "PCD",
+                                       .listed = "PCD",
+                                       .by_content = is_pcd,
+                                       .by_name = [](const FileStart& start) { return start.extension == ".pcd"; },
+                                       .read = without_options<read_pcd>};
+
+}  // namespace formats
 
 }  // namespace cmap

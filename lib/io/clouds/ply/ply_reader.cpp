@@ -1,7 +1,7 @@
 #include <bit>
 
 #include "bytes/ascii_rows.hpp"
-#include "clouds/format_readers.hpp"
+#include "clouds/cloud_format.hpp"
 #include "clouds/ply/ply_header.hpp"
 #include "clouds/ply/ply_rest.hpp"
 #include "clouds/ply/ply_rows.hpp"
@@ -105,8 +105,6 @@ void skip_elements(LineReader& lines, const PlyHeader& header) {
   }
 }
 
-}  // namespace
-
 PointCloud read_ply(ByteSource& source, FileInfo& info) {
   LineReader lines(source);
   const PlyHeader header = read_ply_header(lines);
@@ -117,5 +115,19 @@ PointCloud read_ply(ByteSource& source, FileInfo& info) {
   check_ply_rest(lines, header, needs_swap(header.format), info);
   return cloud;
 }
+
+}  // namespace
+
+namespace formats {
+
+extern constinit const CloudFormat ply{
+    .name = "PLY",
+    .listed = "PLY",
+    .by_content =
+        [](const FileStart& start) { return start.bytes.starts_with("ply\n") || start.bytes.starts_with("ply\r"); },
+    .by_name = [](const FileStart& start) { return start.extension == ".ply"; },
+    .read = without_options<read_ply>};
+
+}  // namespace formats
 
 }  // namespace cmap

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "bytes/ascii_rows.hpp"
-#include "clouds/format_readers.hpp"
+#include "clouds/cloud_format.hpp"
 #include "clouds/text/ptx_header.hpp"
 #include "cmap/io/number_text.hpp"
 
@@ -119,8 +119,6 @@ bool has_colors(const FileStart& start) {
   return std::any_of(lines.begin(), lines.end(), [](std::string_view line) { return tokens_of(line, 8).size() == 7; });
 }
 
-}  // namespace
-
 /// Two lines of one count each; then the scanner's position.
 bool is_ptx(const FileStart& start) {
   if (!start.text) return false;
@@ -153,5 +151,14 @@ PointCloud read_ptx(ByteSource& source, FileInfo& info) {
   }
   return points.finish(info);
 }
+
+}  // namespace
+
+namespace formats {
+
+extern constinit const CloudFormat ptx{
+    .name = "PTX", .listed = "PTX", .by_content = is_ptx, .read = without_options<read_ptx>};
+
+}  // namespace formats
 
 }  // namespace cmap

@@ -2,7 +2,7 @@
 #include <limits>
 
 #include "bytes/ascii_rows.hpp"
-#include "clouds/format_readers.hpp"
+#include "clouds/cloud_format.hpp"
 #include "clouds/text/text_layout.hpp"
 #include "cmap/io/number_text.hpp"
 
@@ -109,8 +109,6 @@ class BlockCount {
   std::uint64_t rows_ = 0;
 };
 
-}  // namespace
-
 PointCloud read_text(ByteSource& source, FileInfo& info) {
   info.format = "text";
   LineReader lines(source);
@@ -137,5 +135,16 @@ PointCloud read_text(ByteSource& source, FileInfo& info) {
   blocks.finish(info);
   return builder.finish(info);
 }
+
+}  // namespace
+
+namespace formats {
+
+extern constinit const CloudFormat text{.name = "text",
+                                        .listed = "text and PTS (x y z [r g b])",
+                                        .by_name = [](const FileStart& start) { return start.text; },
+                                        .read = without_options<read_text>};
+
+}  // namespace formats
 
 }  // namespace cmap

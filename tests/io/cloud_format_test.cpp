@@ -1,4 +1,4 @@
-#include "clouds/file_format.hpp"
+#include "clouds/cloud_format.hpp"
 
 #include <sys/stat.h>
 
@@ -18,7 +18,7 @@ std::string_view format_of(std::string name, std::string_view content) {
   return detect_format(source).name;
 }
 
-TEST(FileFormat, ContentComesBeforeTheExtension) {
+TEST(CloudFormat, ContentComesBeforeTheExtension) {
   EXPECT_EQ(format_of("a.pcd", "ply\nformat"), "PLY");
   EXPECT_EQ(format_of("a.txt", "ply\r\nformat"), "PLY");
   EXPECT_EQ(format_of("a.txt", "\xef\xbb\xbfply\nformat"), "PLY");
@@ -35,7 +35,7 @@ TEST(FileFormat, ContentComesBeforeTheExtension) {
   EXPECT_EQ(format_of("a.txt", "2\n1 2 3\n4 5 6\n"), "text") << "one count only";
 }
 
-TEST(FileFormat, ExtensionDecidesWhereContentDoesNot) {
+TEST(CloudFormat, ExtensionDecidesWhereContentDoesNot) {
   EXPECT_EQ(format_of("a.PLY", "plyx"), "PLY");
   EXPECT_EQ(format_of("a.pcd", "# mine\nSIZE 4\n"), "PCD");
   EXPECT_EQ(format_of("a.ptx", "2\n"), "PTX");
@@ -43,12 +43,13 @@ TEST(FileFormat, ExtensionDecidesWhereContentDoesNot) {
   EXPECT_EQ(format_of("a.pcd.bin", "\x01\x02\x00\xff"s), "KITTI .bin");
 }
 
-TEST(FileFormat, NamesWhatCanBeRead) {
+TEST(CloudFormat, NamesWhatCanBeRead) {
   const std::string message = refusal("a.xyz", "\x01\x02\x00\xff"s);
-  EXPECT_THAT(message, AllOf(HasSubstr("of no known format"), HasSubstr("PLY, PCD, LAS, NPY, NPZ, PTS, PTX")));
+  EXPECT_THAT(message, AllOf(HasSubstr("of no known format"), HasSubstr("; PLY, PCD, LAS, NPY,"),
+                             HasSubstr(" and KITTI .bin can be read")));
 }
 
-TEST(FileFormat, ProseIsNoPointCloud) {
+TEST(CloudFormat, ProseIsNoPointCloud) {
   EXPECT_THAT(refusal("README", "This is\nno point cloud\n"), HasSubstr("line 2: 'no' is not a number"));
 }
 

@@ -1,5 +1,6 @@
 #include "fuzz_target.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  return cmap::fuzz::run(cmap::read_text, data, size);
+  cmap::fuzz::try_session(std::as_bytes(std::span(data, size)));
+  return 0;
 }

@@ -2,7 +2,7 @@
 #include <array>
 
 #include "bytes/ascii_rows.hpp"
-#include "clouds/format_readers.hpp"
+#include "clouds/cloud_format.hpp"
 #include "cmap/io/number_text.hpp"
 
 namespace cmap {
@@ -72,8 +72,6 @@ bool is_vertex(std::string_view line) {
   return tokens.size() == 4 && tokens[0] == "v" && parse_numbers({tokens.begin() + 1, tokens.end()}, values);
 }
 
-}  // namespace
-
 bool is_obj(const FileStart& start) {
   if (!start.text) return false;
   if (start.extension == ".obj") return true;
@@ -103,5 +101,14 @@ PointCloud read_obj_points(ByteSource& source, FileInfo& info) {
   stage.flush();
   return builder.finish(info);
 }
+
+}  // namespace
+
+namespace formats {
+
+extern constinit const CloudFormat obj{
+    .name = "OBJ", .listed = "OBJ without faces", .by_content = is_obj, .read = without_options<read_obj_points>};
+
+}  // namespace formats
 
 }  // namespace cmap

@@ -1,5 +1,0 @@
-#include "fuzz_target.hpp"
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  return cmap::fuzz::run(cmap::read_npy_cloud, data, size);
-}

@@ -1,6 +1,0 @@
-#include "fuzz_target.hpp"
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  cmap::fuzz::try_session(std::as_bytes(std::span(data, size)));
-  return cmap::fuzz::run(cmap::read_npz_cloud, data, size);
-}
