@@ -86,6 +86,7 @@ Intervals intervals_of(const MetricInputs& inputs, std::span<const Metric* const
                                     intervals.blocks.keys.size(), options.block_m)});
   }
   intervals.options.n_replicates = options.bootstrap;
+  intervals.options.seed = options.bootstrap_seed;
   for (const Interval& interval : bootstrap(intervals.blocks, inputs.settings, intervals.options)) {
     if (std::ranges::count(metrics, metric_of(interval.id)) > 0) intervals.metrics.push_back(interval);
   }

@@ -54,6 +54,7 @@ OptionFields further_fields(EvaluationOptions& o) {
       field("bootstrap", o.bootstrap, {0, 1'000'000}, "N",
             "confidence intervals of 95 % from N replicates of blocks of the map"),
       field("block", o.block_m, kPositive, "METERS", "edge of those blocks"),
+      field("bootstrap-seed", o.bootstrap_seed, {0, 1'000'000'000}, "N", "of the random numbers that draw them"),
       field("observed", o.observed, kObservedNames, nullptr,
             "also the metrics without what the other map could not have seen: auto, nothing within 1 m columns; "
             "sensor, the reference as --observed-from sees it"),

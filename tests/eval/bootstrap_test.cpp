@@ -46,9 +46,10 @@ Values summed(const BlockSums& blocks, const MetricOptions& options) {
 
 const MetricSettings kSettings{MetricOptions{}};
 
-Evaluation evaluated_with_blocks() {
+Evaluation evaluated_with_blocks(std::uint64_t seed = 1) {
   EvaluationOptions options = options_for({"all"});
   options.bootstrap = 50;
+  options.bootstrap_seed = seed;
   options.block_m = 4.0;
   options.awd_min_points = 10;
   options.mme_radius_m = 1.0;
@@ -190,6 +191,14 @@ TEST(Bootstrap, WhichMetricsAreAskedForChangesNoBlock) {
   const Evaluation more = evaluate(reference, estimate, options);
   EXPECT_EQ(more.intervals->blocks.keys, alone.intervals->blocks.keys);
   EXPECT_EQ(chamfer_of(more.intervals->metrics).lower, chamfer_of(alone.intervals->metrics).lower);
+}
+
+TEST(Bootstrap, AnotherSeedDrawsOtherBlocksOfTheSameValues) {
+  const Evaluation first = evaluated_with_blocks(1), second = evaluated_with_blocks(2);
+  const Interval &one = chamfer_of(first.intervals->metrics), &two = chamfer_of(second.intervals->metrics);
+  EXPECT_EQ(one.value, two.value);
+  EXPECT_NE(one.lower, two.lower);
+  EXPECT_EQ(second.intervals->options.seed, 2U);
 }
 
 TEST(Bootstrap, TheSameForAnyNumberOfThreads) {

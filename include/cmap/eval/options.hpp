@@ -33,6 +33,7 @@ struct EvaluationOptions : MetricOptions {
   std::vector<const PeerTool*> as;   ///< other tools
   std::uint64_t bootstrap = 0;       ///< replicates for confidence intervals; 0: none
   double block_m = 10.0;             ///< of the bootstrap
+  std::uint64_t bootstrap_seed = 1;
   Observed observed = Observed::kNone;
   VisibilityOptions visibility = {};  ///< of the sensor
   AlignMethod align;
