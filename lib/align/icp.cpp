@@ -5,55 +5,32 @@
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <optional>
 
 #include "cmap/align/umeyama.hpp"
 #include "cmap/core/error.hpp"
-#include "cmap/core/parallel.hpp"
-#include "registration_cloud.hpp"
+#include "icp_levels.hpp"
 #include "require.hpp"
 
 namespace cmap {
 namespace {
 
-constexpr std::size_t kPointChunk = 1024;
 constexpr double kPlaneThickness = 1e-3;  ///< variance across a plane over that along it (Segal et al.)
 
 constexpr std::array<const char*, 3> kMetricNames{"icp", "plane", "gicp"};
 
-/// What an iteration sees: one level's clouds and the matches at the present transform.
-class Level {
+/// One level's steps by options.metric.
+class MetricSteps {
  public:
-  Level(const PointCloud& source, const PointCloud& target, double scale, const IcpLevel& level,
-        const IcpOptions& options)
-      : level_(level),
-        options_(options),
-        source_(thinned_to(source, level.voxel_m / scale)),
-        target_(thinned_target(target, level.voxel_m), static_cast<std::size_t>(options.neighbors)) {
-    if (options.metric == IcpMetric::kGicp) {
-      source_index_.emplace(source_.points());
-      source_surface_.emplace(*source_index_, static_cast<std::size_t>(options.neighbors));
-      source_surface_->fit_all();
-    }
+  MetricSteps(LevelMatches& level, const IcpOptions& options) : level_(level), options_(options) {
+    if (options.metric == IcpMetric::kGicp) source_surface_.emplace(level.source, options.neighbors);
   }
 
-  MovingSource& source() { return source_; }
-  RegistrationTarget& target() { return target_; }
-
-  /// Iterates from a local transform; returns the last one.
-  Similarity run(Similarity local, Alignment& result) {
-    const double unit_m = level_.voxel_m > 0.0 ? level_.voxel_m : level_.max_distance_m / 4.0;
-    const StepLimits limits{options_.min_rotation_rad, options_.min_translation_voxels * unit_m, options_.min_scale};
-    result.converged = false;
-    for (int i = 0; i < level_.max_iterations && !result.converged; ++i) {
-      field_ = source_.nearest(target_.index, local);
-      if (options_.metric != IcpMetric::kPoint) target_.fit_surface(field_, level_.max_distance_m);
-      const Similarity next = options_.metric == IcpMetric::kPoint ? closed_form_step(local) : gauss_newton_step(local);
-      result.converged = limits.hold(local, next, source_.center());
-      local = next;
-      ++result.iterations;
-    }
-    return local;
+  Similarity next(const Similarity& local) const {
+    if (options_.metric == IcpMetric::kPoint) return closed_form_step(local);
+    level_.target.fit_surface(level_.field, level_.settings.max_distance_m);
+    return gauss_newton_step(local);
   }
 
  private:
@@ -64,61 +41,54 @@ class Level {
   };
 
   Match match(const Similarity& local, std::size_t slot) const {
-    Match m{MovingSource::moved(local, source_.points(), slot),
-            target_.index.points.offset(field_.slot[slot]).cast<double>(), field_.slot[slot], 0.0};
-    const double distance_m = std::sqrt(field_.sq_dist[slot]);
-    if (distance_m > level_.max_distance_m) return m;
+    const NearestField& field = level_.field;
+    const double max_distance_m = level_.settings.max_distance_m;
+    Match m{MovingSource::moved(local, level_.source.points(), slot),
+            level_.target.index.points.offset(field.slot[slot]).cast<double>(), field.slot[slot], 0.0};
+    const double distance_m = std::sqrt(field.sq_dist[slot]);
+    if (distance_m > max_distance_m) return m;
     const double residual_m = options_.metric == IcpMetric::kPlane
-                                  ? std::abs((m.p - m.q).dot(target_.surface.normal(m.target_slot)))
+                                  ? std::abs((m.p - m.q).dot(level_.target.surface.normal(m.target_slot)))
                                   : distance_m;
-    m.weight = robust_weight(options_.kernel, residual_m, options_.kernel_width * level_.max_distance_m);
+    m.weight = robust_weight(options_.kernel, residual_m, options_.kernel_width * max_distance_m);
     return m;
   }
 
   Similarity closed_form_step(const Similarity& local) const {
-    const PairMoments moments = pair_moments(source_.size(), [&](std::size_t slot) {
+    const MovingSource& source = level_.source;
+    const PairMoments moments = pair_moments(source.size(), [&](std::size_t slot) {
       const Match m = match(local, slot);
-      return WeightedPair{source_.points().offset(slot).cast<double>(), m.q, m.weight};
+      return WeightedPair{source.points().offset(slot).cast<double>(), m.q, m.weight};
     });
-    if (moments.n < 3) fail_no_overlap(moments.n, level_.max_distance_m);
+    if (moments.n < 3) fail_no_overlap(moments.n, level_.settings.max_distance_m);
     return fit_similarity(moments, {options_.with_scale, local.scale, 0.0});
   }
 
   Similarity gauss_newton_step(const Similarity& local) const {
-    const Eigen::Vector3d pivot = local * source_.center();
-    const auto equations = ordered_sum<NormalEquations>(source_.size(), kPointChunk, [&](std::size_t b, std::size_t e) {
-      NormalEquations part;
-      for (std::size_t slot = b; slot < e; ++slot) add(local, slot, pivot, part);
-      return part;
-    });
-    if (equations.n < 3) fail_no_overlap(equations.n, level_.max_distance_m);
-    const double lever_m = std::sqrt(equations.H.topLeftCorner<3, 3>().trace() / equations.H.block<3, 3>(3, 3).trace());
-    if (!(lever_m > 0.0)) throw UnsupportedError("the matched points have no surface: they coincide or are collinear");
-    return solve_step(equations, options_.with_scale, lever_m, pivot) * local;
+    const Eigen::Vector3d pivot = local * level_.source.center();
+    const NormalEquations equations =
+        equations_of(level_, [&](std::size_t slot, NormalEquations& part) { add(local, slot, pivot, part); });
+    return solve_step(equations, options_.with_scale, lever_m(equations), pivot) * local;
   }
 
   void add(const Similarity& local, std::size_t slot, const Eigen::Vector3d& pivot, NormalEquations& part) const {
     const Match m = match(local, slot);
     if (m.weight == 0.0) return;
-    const Eigen::Vector3d normal = target_.surface.normal(m.target_slot);
+    const Eigen::Vector3d normal = level_.target.surface.normal(m.target_slot);
     if (options_.metric == IcpMetric::kPlane) {
       part.add_plane(m.p - pivot, m.p - m.q, normal, m.weight);
       return;
     }
-    const Eigen::Vector3d source_normal = local.rotation * source_surface_->normal(slot);
+    const Eigen::Vector3d source_normal = local.rotation * source_surface_->surface.normal(slot);
     const Eigen::Matrix3d covariance =
         2.0 * Eigen::Matrix3d::Identity() -
         (1.0 - kPlaneThickness) * (normal * normal.transpose() + source_normal * source_normal.transpose());
     part.add(m.p - pivot, m.p - m.q, covariance.inverse(), m.weight);
   }
 
-  const IcpLevel& level_;
+  LevelMatches& level_;
   const IcpOptions& options_;
-  MovingSource source_;
-  RegistrationTarget target_;
-  std::optional<Bvh> source_index_;        ///< GICP only
-  std::optional<Surface> source_surface_;  ///< GICP only
-  NearestField field_;
+  std::optional<SourceSurface> source_surface_;  ///< GICP only
 };
 
 }  // namespace
@@ -145,24 +115,12 @@ std::vector<IcpLevel> coarse_to_fine(double voxel_m, double max_distance_m, int 
 
 Alignment icp(const PointCloud& source, const PointCloud& target, const Eigen::Matrix4d& T_initial,
               const IcpOptions& options) {
-  check_options(options);
-  Alignment result;
+  const auto steps = [&](LevelMatches& level) -> NextTransform {
+    const auto metric = std::make_shared<const MetricSteps>(level, options);
+    return [metric](const Similarity& local) { return metric->next(local); };
+  };
+  Alignment result = iterate_levels(source, target, T_initial, options, steps);
   result.method = kMetricNames[static_cast<std::size_t>(options.metric)];
-  Similarity T = similarity_from(T_initial);
-  for (std::size_t i = 0; i < options.levels.size(); ++i) {
-    const IcpLevel& settings = options.levels[i];
-    Level level(source, target, T.scale, settings, options);
-    const Similarity local = level.run(local_transform(T, source.origin, target.origin), result);
-    T = world_transform(local, source.origin, target.origin);
-    if (i + 1 == options.levels.size()) {
-      result.voxel_m = settings.voxel_m;
-      result.max_distance_m = settings.max_distance_m;
-      assess(level.source(), level.target(), local, settings.max_distance_m, options.with_scale, result);
-    }
-  }
-  result.T_dst_src = T.matrix();
-  result.scale = T.scale;
-  tell_convergence(result);
   return result;
 }
 

@@ -82,21 +82,25 @@ void NormalEquations::add(const Eigen::Vector3d& arm, const Eigen::Vector3d& r, 
   ++n;
 }
 
-Similarity solve_step(const NormalEquations& equations, bool with_scale, double lever_m, const Eigen::Vector3d& pivot) {
+Vector7d solve_parameters(const NormalEquations& equations, bool with_scale, double lever_m) {
   const Eigensystem eigen = decompose(equations.H, with_scale, lever_m);
   const Vector7d factors = per_meter(lever_m);
   const Eigen::Index size = eigen.eigenvalues().size();
   const Eigen::VectorXd g = factors.head(size).cwiseProduct(equations.g.head(size));
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(size);
+  Vector7d x = Vector7d::Zero();
   for (Eigen::Index i = 0; i < size; ++i) {
     const double value = eigen.eigenvalues()[i];
     if (value > kUndetermined * eigen.eigenvalues()[size - 1]) {
-      x -= eigen.eigenvectors().col(i) * (eigen.eigenvectors().col(i).dot(g) / value);
+      x.head(size) -= eigen.eigenvectors().col(i) * (eigen.eigenvectors().col(i).dot(g) / value);
     }
   }
-  x = x.cwiseProduct(factors.head(size)).eval();
+  return x.cwiseProduct(factors);
+}
+
+Similarity solve_step(const NormalEquations& equations, bool with_scale, double lever_m, const Eigen::Vector3d& pivot) {
+  const Vector7d x = solve_parameters(equations, with_scale, lever_m);
   Similarity step;
-  step.scale = with_scale ? std::exp(x[6]) : 1.0;
+  step.scale = std::exp(x[6]);
   step.rotation = rotation_from(x.head<3>());
   step.translation = pivot + x.segment<3>(3) - step.linear() * pivot;
   return step;

@@ -26,8 +26,11 @@ struct NormalEquations {
   void add(const Eigen::Vector3d& arm, const Eigen::Vector3d& r, const Eigen::Matrix3d& M, double weight);
 };
 
-/// The Gauss-Newton step as a transform about the pivot. Directions that the equations do not determine stay;
-/// lever_m makes rotation, scale and translation comparable.
+/// The Gauss-Newton step's parameters, the log scale 0 where it is not asked for. Directions that the equations do not
+/// determine stay; lever_m makes rotation, scale and translation comparable.
+Vector7d solve_parameters(const NormalEquations& equations, bool with_scale, double lever_m);
+
+/// That step as a transform about the pivot.
 Similarity solve_step(const NormalEquations& equations, bool with_scale, double lever_m, const Eigen::Vector3d& pivot);
 
 /// Condition and weakest direction of an information matrix; see Alignment.

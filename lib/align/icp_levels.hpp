@@ -1,0 +1,57 @@
+#pragma once
+
+#include <functional>
+
+#include "cmap/align/icp.hpp"
+#include "cmap/core/parallel.hpp"
+#include "registration_cloud.hpp"
+
+namespace cmap {
+
+/// What an iteration sees: one level's clouds and the matches at the present transform.
+struct LevelMatches {
+  LevelMatches(const PointCloud& source, const PointCloud& target, double scale, const IcpLevel& level, int neighbors);
+
+  IcpLevel settings;
+  MovingSource source;
+  RegistrationTarget target;
+  NearestField field;
+};
+
+/// Planes through a source's points, in its own frame.
+struct SourceSurface {
+  SourceSurface(const MovingSource& source, int neighbors);
+  SourceSurface(const SourceSurface&) = delete;
+  SourceSurface& operator=(const SourceSurface&) = delete;
+
+  Bvh index;
+  Surface surface;
+};
+
+/// The transform after one more step, from the level's matches at `local`.
+using NextTransform = std::function<Similarity(const Similarity& local)>;
+
+/// Iterates level by level, from matches to steps; all that differs is what a step minimizes: `metric` makes a level's
+/// steps (options.metric is not read). Fills everything but the method's name. Throws as icp() does.
+Alignment iterate_levels(const PointCloud& source, const PointCloud& target, const Eigen::Matrix4d& T_initial,
+                         const IcpOptions& options, const std::function<NextTransform(LevelMatches&)>& metric);
+
+/// The equations of all slots, in a fixed order; add(slot, part) adds those of one. Throws UnsupportedError where fewer
+/// than 3 match.
+template <class Add>
+NormalEquations equations_of(const LevelMatches& level, Add&& add) {
+  constexpr std::size_t kPointChunk = 1024;
+  const auto equations =
+      ordered_sum<NormalEquations>(level.source.size(), kPointChunk, [&](std::size_t b, std::size_t e) {
+        NormalEquations part;
+        for (std::size_t slot = b; slot < e; ++slot) add(slot, part);
+        return part;
+      });
+  if (equations.n < 3) fail_no_overlap(equations.n, level.settings.max_distance_m);
+  return equations;
+}
+
+/// What a turn moves the matched points by, RMS, m per rad. Throws UnsupportedError where they have no surface.
+double lever_m(const NormalEquations& equations);
+
+}  // namespace cmap
