@@ -74,7 +74,7 @@ OptionFields alignment_fields(EvaluationOptions& o) {
             "thinning for the alignment; by default from the reference's size"),
       field("align-distance", o.align_distance_m, kPositive, "METERS",
             "farther pairs are no matches; by default 10 voxels"),
-      field("align-scale", o.align_scale, "icp, plane, gicp, global: also find the scale (sim3 always does)"),
+      field("align-scale", o.align_scale, "also find the scale, where the method leaves the choice (sim3 always does)"),
       field("trajectory-fit", o.trajectory_fit, trajectory_fit_names(), "FIT",
             "of trajectories: first-frame, se3 or sim3"),
       field("tanksandtemples-tau", o.tanks_and_temples_tau_m, kPositive, "METERS",
