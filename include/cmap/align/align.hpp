@@ -27,8 +27,8 @@ struct AlignOptions {
 /// Whether a method estimates the scale.
 enum class ScaleRule { kOnRequest, kAlways };
 
-/// A way to register one map onto another: a source of its name in lib/align/methods/, and that name in the module's
-/// CMakeLists.txt. Command lines, configuration files and --help follow.
+/// A way to register one map onto another: a source of its name in lib/align/methods/, that name in the module's
+/// CMakeLists.txt, and a test of its name. Command lines, configuration files and --help follow.
 struct RegistrationMethod {
   std::string_view name;
   std::string_view summary;        ///< for people: "point to plane"
