@@ -143,7 +143,8 @@ TEST(SelectMapMetrics, RefusesOptionsThatNeedAReference) {
     change(options);
     return test::refusal_of<UsageError>([&] { select_map_metrics(options); });
   };
-  EXPECT_EQ(refusal([](auto& o) { o.align.kind = AlignKind::kTrajectory; }), "align: needs a reference map, which is missing");
+  EXPECT_EQ(refusal([](auto& o) { o.align.kind = AlignKind::kTrajectory; }),
+            "align: needs a reference map, which is missing");
   EXPECT_THAT(refusal([](auto& o) { o.as = test::tools({"open3d"}); }), HasSubstr("as: needs"));
   EXPECT_THAT(refusal([](auto& o) { o.bootstrap = 100; }), HasSubstr("bootstrap: needs"));
   EXPECT_THAT(refusal([](auto& o) { o.observed = Observed::kAuto; }), HasSubstr("observed: needs"));

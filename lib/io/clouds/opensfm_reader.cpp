@@ -78,10 +78,8 @@ PointCloud read_opensfm(ByteSource& source, FileInfo& info) {
 
 namespace formats {
 
-extern constinit const CloudFormat opensfm{.name = "OpenSfM",
-                                           .listed = "OpenSfM",
-                                           .by_content = is_opensfm,
-                                           .read = without_options<read_opensfm>};
+extern constinit const CloudFormat opensfm{
+    .name = "OpenSfM", .listed = "OpenSfM", .by_content = is_opensfm, .read = without_options<read_opensfm>};
 
 }  // namespace formats
 
