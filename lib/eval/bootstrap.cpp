@@ -37,9 +37,11 @@ std::vector<Interval> resampled(std::size_t n_blocks, const BootstrapOptions& op
   const std::vector<double> once(n_blocks, 1.0);
   std::vector<Interval> intervals;
   for (const SummedValue& v : values_for(once)) intervals.push_back({v.id, v.threshold_m, v.value, NAN, NAN});
+  // Apart from those of any other seed; the replicates of seed 1 begin with 1.
+  const std::uint64_t first_seed = 1 + (options.seed - 1) * kMostReplicates;
   std::vector<std::vector<SummedValue>> replicates(options.n_replicates);
   parallel_chunks(options.n_replicates, 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) replicates[i] = values_for(draw(n_blocks, options.seed + i));
+    for (std::size_t i = begin; i < end; ++i) replicates[i] = values_for(draw(n_blocks, first_seed + i));
   });
   constexpr double kNeeded = 0.9;  // of the replicates
   for (std::size_t m = 0; m < intervals.size(); ++m) {

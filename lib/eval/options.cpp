@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cmap/eval/bootstrap.hpp"
 #include "option_values.hpp"
 
 namespace cmap {
@@ -51,7 +52,7 @@ OptionFields further_fields(EvaluationOptions& o) {
       {"as", tools_value(o.as), "TOOLS",
        "also what color-map-evaluation (the paper's authors'), cloudanalyzer, mapeval, open3d, mpeg, cloudcompare or "
        "tanksandtemples would print"},
-      field("bootstrap", o.bootstrap, {0, 1'000'000}, "N",
+      field("bootstrap", o.bootstrap, {0, kMostReplicates}, "N",
             "confidence intervals of 95 % from N replicates of blocks of the map"),
       field("block", o.block_m, kPositive, "METERS", "edge of those blocks"),
       field("bootstrap-seed", o.bootstrap_seed, {0, 1'000'000'000}, "N", "of the random numbers that draw them"),

@@ -18,9 +18,11 @@ struct BlockSums {
   MetricSums sums;
 };
 
-/// What is fixed about a bootstrap; the seed makes it repeatable on every machine.
+inline constexpr std::uint64_t kMostReplicates = 1'000'000;
+
+/// What is fixed about a bootstrap; the seed makes it repeatable on every machine. No two seeds share a replicate.
 struct BootstrapOptions {
-  std::uint64_t n_replicates = 1000;
+  std::uint64_t n_replicates = 1000;  ///< at most kMostReplicates
   double level = 0.95;
   std::uint64_t seed = 1;
 };
