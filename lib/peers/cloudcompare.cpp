@@ -6,7 +6,6 @@
 #include "distances.hpp"
 
 namespace cmap {
-namespace {}  // namespace
 
 CloudCompareDistance cloudcompare_distance(std::span<const double> sq_dist) {
   double sum = 0.0;

@@ -7,7 +7,6 @@
 #include "distances.hpp"
 
 namespace cmap {
-namespace {}  // namespace
 
 Open3dRegistration open3d_registration(std::span<const double> sq_dist, double threshold_m) {
   double sum = 0.0;
