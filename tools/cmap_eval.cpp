@@ -252,7 +252,7 @@ ExitCode run_pair(const Arguments& arguments, cmap::RunClock& clock) {
   auto [reference, estimate] = clock.timed_reading(
       [&] { return cmap::read_both(arguments.reference, arguments.estimate, cmap::read_options(options, true)); });
   const cmap::InputDescription about_reference = describe(reference), about_estimate = describe(estimate);
-  cmap::Evaluation evaluation = blaming_files(arguments, [&] {
+  cmap::EvaluatedPair evaluation = blaming_files(arguments, [&] {
     return cmap::evaluate_by_protocol(std::move(reference.cloud), std::move(estimate.cloud), options, inputs,
                                       {.progress = clock.progress()});
   });
@@ -281,7 +281,7 @@ ExitCode run_map(const Arguments& arguments, cmap::RunClock& clock) {
   cmap::PointCloudFile map = clock.timed_reading(
       [&] { return cmap::read_point_cloud(arguments.reference, cmap::read_options(options, true)); });
   const cmap::InputDescription about_map = describe(map);
-  const cmap::MapEvaluation evaluation = blaming_files(
+  const cmap::EvaluatedMap evaluation = blaming_files(
       arguments, [&] { return cmap::evaluate_map(std::move(map.cloud), options, {.progress = clock.progress()}); });
   const auto report = cmap::make_report(about_map, evaluation, clock.description_after(evaluation));
   const bool requirements_hold = check_requirements(requirements, evaluation);

@@ -101,7 +101,8 @@ void evaluate_map(const Arguments& a, cmap::PointCloudFile reference, const std:
   const fs::path folder(a.output);
   cmap::PointCloudFile map = cmap::read_point_cloud(folder / "map.ply", {.sha256 = true});
   const cmap::InputDescription about_reference = describe(reference), about_map = describe(map);
-  const cmap::Evaluation evaluation = cmap::evaluate_by_protocol(std::move(reference.cloud), std::move(map.cloud), {});
+  const cmap::EvaluatedPair evaluation =
+      cmap::evaluate_by_protocol(std::move(reference.cloud), std::move(map.cloud), {});
   cmap::RunDescription run;
   run.command = command;
   const nlohmann::ordered_json report = cmap::make_report(about_reference, about_map, evaluation, run);

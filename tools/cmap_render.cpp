@@ -230,7 +230,7 @@ void draw_pair(const Arguments& a, const Plan& plan, cmap::ProgressBar& progress
   progress.update("read", 0.0);
   auto [reference, estimate] = cmap::read_both(a.map, a.estimate, cmap::read_options(plan.evaluation));
   const bool has_color = reference.cloud.has_color() && estimate.cloud.has_color();
-  const cmap::Evaluation evaluation = cmap::evaluate(
+  const cmap::EvaluatedPair evaluation = cmap::evaluate(
       std::move(reference.cloud), std::move(estimate.cloud), evaluation_options(a, plan, has_color), T_ref_est,
       {.progress = [&](std::string_view stage, double done) { progress.update(stage, done); }});
   std::vector<cmap::Layer> layers;

@@ -45,7 +45,7 @@ auto of_pair(Work&& work) {
 }
 
 struct Evaluated {
-  Evaluation evaluation;
+  EvaluatedPair evaluation;
   Json report;
 };
 

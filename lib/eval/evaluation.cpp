@@ -99,9 +99,9 @@ void add_fairness(Evaluation& result, MetricInputs& inputs, std::span<const Metr
 
 }  // namespace
 
-Evaluation evaluate(PointCloud reference, PointCloud estimate, const EvaluationOptions& options,
-                    const Eigen::Matrix4d& T_ref_est, const Execution& execution,
-                    std::span<const Eigen::Vector3d> sensor_positions) {
+EvaluatedPair evaluate(PointCloud reference, PointCloud estimate, const EvaluationOptions& options,
+                       const Eigen::Matrix4d& T_ref_est, const Execution& execution,
+                       std::span<const Eigen::Vector3d> sensor_positions) {
   const ExecutionScope scope(execution);
   if (options.observed == Observed::kSensor && sensor_positions.empty()) {
     throw UsageError("observed: \"sensor\" needs to know where the sensor was");
@@ -117,8 +117,8 @@ Evaluation evaluate(PointCloud reference, PointCloud estimate, const EvaluationO
   CoordinateSteps steps;
   clock.run("prepare", 0.15,
             [&] { steps = prepare_clouds(reference, estimate, options, selection, T_ref_est, warnings); });
-  Evaluation result{
-      .options = options, .T_ref_est = T_ref_est, .pair = index_and_pair(reference, estimate, options.index, clock)};
+  EvaluatedPair result{{.options = options, .T_ref_est = T_ref_est},
+                       index_and_pair(reference, estimate, options.index, clock)};
 
   MetricInputs inputs(options, result.pair);
   const std::vector<const Metric*> metrics = selected_metrics(selection, result.pair.has_color());

@@ -18,7 +18,7 @@ void check_color(const PointCloud& map, const MetricSelection& selection, std::v
 
 }  // namespace
 
-MapEvaluation evaluate_map(PointCloud map, const EvaluationOptions& options, const Execution& execution) {
+EvaluatedMap evaluate_map(PointCloud map, const EvaluationOptions& options, const Execution& execution) {
   const ExecutionScope scope(execution);
   const MetricSelection selection = select_map_metrics(options);
   std::vector<Warning> warnings;
@@ -34,7 +34,7 @@ MapEvaluation evaluate_map(PointCloud map, const EvaluationOptions& options, con
     indexed.emplace(map);
     map = {};  // its memory is needed
   });
-  MapEvaluation result{.options = options, .map = std::move(*indexed)};
+  EvaluatedMap result{{.options = options}, std::move(*indexed)};
 
   const Bvh& index = result.map.index;
   warn_about_points("map", index.points, sampled_spacing(index), step, options, warnings);

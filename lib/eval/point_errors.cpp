@@ -15,7 +15,7 @@ Array<float> field(const PointBlocks& points, ValueAt&& value_at) {
   return values;
 }
 
-void write_errors(const Evaluation& evaluation, const NearestPairs& pairs, const LocalColorRecall* recall,
+void write_errors(const EvaluatedPair& evaluation, const NearestPairs& pairs, const LocalColorRecall* recall,
                   OutputFile& file) {
   const PointBlocks& points = pairs.from.index.points;
   const Array<float> distances = field(points, [&](std::size_t slot) { return pairs.distance_m(slot); });
@@ -34,11 +34,11 @@ void write_errors(const Evaluation& evaluation, const NearestPairs& pairs, const
 
 }  // namespace
 
-void write_estimate_errors(const Evaluation& evaluation, OutputFile& file) {
+void write_estimate_errors(const EvaluatedPair& evaluation, OutputFile& file) {
   write_errors(evaluation, evaluation.pair.estimate_to_reference(), nullptr, file);
 }
 
-void write_reference_errors(const Evaluation& evaluation, OutputFile& file) {
+void write_reference_errors(const EvaluatedPair& evaluation, OutputFile& file) {
   write_errors(evaluation, evaluation.pair.reference_to_estimate(), evaluation.recall ? &*evaluation.recall : nullptr,
                file);
 }

@@ -59,8 +59,8 @@ EvaluationOptions plain(EvaluationOptions options) {
 
 }  // namespace
 
-Evaluation evaluate_by_protocol(PointCloud reference, PointCloud estimate, const EvaluationOptions& options,
-                                const ProtocolInputs& inputs, const Execution& execution) {
+EvaluatedPair evaluate_by_protocol(PointCloud reference, PointCloud estimate, const EvaluationOptions& options,
+                                   const ProtocolInputs& inputs, const Execution& execution) {
   const ExecutionScope scope(execution);
   const Execution same_sink{.progress = execution.progress};
   std::vector<std::pair<std::string, double>> stages;
@@ -85,7 +85,7 @@ Evaluation evaluate_by_protocol(PointCloud reference, PointCloud estimate, const
   }
   std::vector<Eigen::Vector3d> sensor_positions = inputs.sensor_positions;
   for (Eigen::Vector3d& p : sensor_positions) p = (T_ref_est * p.homogeneous()).head<3>();
-  Evaluation evaluation =
+  EvaluatedPair evaluation =
       evaluate(std::move(reference), std::move(estimate), options, T_ref_est, same_sink, sensor_positions);
   evaluation.warnings.insert(evaluation.warnings.begin(), inputs.warnings.begin(), inputs.warnings.end());
   if (alignment) warn_of_alignment(*alignment, evaluation.warnings);

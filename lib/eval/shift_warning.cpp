@@ -43,7 +43,7 @@ std::string sentence(const Candidate& shift) {
 
 }  // namespace
 
-void warn_about_shifts(Evaluation& evaluation, const std::filesystem::path& reference,
+void warn_about_shifts(EvaluatedPair& evaluation, const std::filesystem::path& reference,
                        const std::filesystem::path& estimate) {
   constexpr double kTogether = 0.01;  // of the gap may be left, as of heights above another surface
   const Box3d fixed = evaluation.pair.reference.index.bounds(), moving = evaluation.pair.estimate.index.bounds();

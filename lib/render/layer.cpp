@@ -93,7 +93,7 @@ Layer voxel_layer(const IndexedMap& map, std::string title, ColorMap color_map, 
                   [&](std::size_t slot) { return voxels.at(points.world(slot)); });
 }
 
-Layer consistency_layer(const Evaluation& evaluation, const LayerOptions& options) {
+Layer consistency_layer(const EvaluatedPair& evaluation, const LayerOptions& options) {
   const IndexedMap& map = evaluation.pair.estimate;
   if (!map.has_color()) throw UnsupportedError("layer ccs: the estimate needs color");
   const MetricOptions& o = evaluation.options;
@@ -106,7 +106,7 @@ Layer consistency_layer(const Evaluation& evaluation, const LayerOptions& option
                      options, voxels);
 }
 
-Layer wasserstein_layer(const Evaluation& evaluation, const LayerOptions& options) {
+Layer wasserstein_layer(const EvaluatedPair& evaluation, const LayerOptions& options) {
   const double voxel_m = evaluation.options.awd_voxel_m;
   VoxelValues voxels(evaluation.pair.estimate, voxel_m);
   for (const auto& [index, distance_m] :
@@ -117,7 +117,7 @@ Layer wasserstein_layer(const Evaluation& evaluation, const LayerOptions& option
                      ColorMap::kViridis, "m", options, voxels);
 }
 
-Layer density_layer(const Evaluation& evaluation, const LayerOptions& options) {
+Layer density_layer(const EvaluatedPair& evaluation, const LayerOptions& options) {
   const IndexedMap& map = evaluation.pair.estimate;
   const PointBlocks& points = map.index.points;
   const double voxel_m = evaluation.options.ccs_voxel_m;
@@ -149,7 +149,7 @@ Layer color_layer(const IndexedMap& map, std::string title) {
   return layer;
 }
 
-Layer recall_layer(const Evaluation& evaluation) {
+Layer recall_layer(const EvaluatedPair& evaluation) {
   if (!evaluation.recall) {
     throw UnsupportedError("layer lcr: local color recall was not computed; it needs color in both maps");
   }
@@ -166,7 +166,7 @@ Layer recall_layer(const Evaluation& evaluation) {
   return layer;
 }
 
-std::string caption_of(const Evaluation& evaluation, std::string_view metric) {
+std::string caption_of(const EvaluatedPair& evaluation, std::string_view metric) {
   const Record* record = evaluation.metrics.find(metric);
   if (record == nullptr || !std::isfinite(record->value.value_or(NAN))) return "";
   const double value = *record->value;
@@ -175,31 +175,31 @@ std::string caption_of(const Evaluation& evaluation, std::string_view metric) {
   return fmt::format("{} {:.4g}{}", info.symbol, value, info.unit == "1" ? "" : fmt::format(" {}", info.unit));
 }
 
-void require_color(const Evaluation& evaluation, std::string_view layer) {
+void require_color(const EvaluatedPair& evaluation, std::string_view layer) {
   if (!evaluation.pair.has_color()) throw UnsupportedError(fmt::format("layer {}: both maps need color", layer));
 }
 
-Layer distance_layer(const Evaluation& evaluation, const LayerOptions& options) {
+Layer distance_layer(const EvaluatedPair& evaluation, const LayerOptions& options) {
   const NearestPairs pairs = evaluation.pair.estimate_to_reference();
   return heat_map(pairs.from.index.points, "Distance to the reference", ColorMap::kViridis, "m", options,
                   [&](std::size_t slot) { return pairs.distance_m(slot); });
 }
 
-Layer color_distance_layer(const Evaluation& evaluation, const LayerOptions& options) {
+Layer color_distance_layer(const EvaluatedPair& evaluation, const LayerOptions& options) {
   require_color(evaluation, "color-distance");
   const NearestPairs pairs = evaluation.pair.estimate_to_reference();
   return heat_map(pairs.from.index.points, "Color distance", ColorMap::kInferno, "unit RGB", options,
                   [&](std::size_t slot) { return pairs.color_distance(slot); });
 }
 
-Layer delta_e_layer(const Evaluation& evaluation, const LayerOptions& options) {
+Layer delta_e_layer(const EvaluatedPair& evaluation, const LayerOptions& options) {
   require_color(evaluation, "delta-e");
   const NearestPairs pairs = evaluation.pair.estimate_to_reference();
   return heat_map(pairs.from.index.points, "CIEDE2000", ColorMap::kInferno, "", options,
                   [&](std::size_t slot) { return pairs.delta_e(slot); });
 }
 
-Layer layer_of(const Evaluation& evaluation, std::string_view name, const LayerOptions& options) {
+Layer layer_of(const EvaluatedPair& evaluation, std::string_view name, const LayerOptions& options) {
   if (name == "reference") return make_layer(evaluation.pair.reference, "Reference", options);
   if (name == "estimate") return make_layer(evaluation.pair.estimate, "Estimate", options);
   if (name == "lcr") return recall_layer(evaluation);
@@ -237,7 +237,7 @@ std::string_view metric_of_layer(std::string_view name) {
   return "";
 }
 
-Layer make_layer(const Evaluation& evaluation, std::string_view name, const LayerOptions& options) {
+Layer make_layer(const EvaluatedPair& evaluation, std::string_view name, const LayerOptions& options) {
   check_layer_name(name);
   Layer layer = layer_of(evaluation, name, options);
   layer.caption = caption_of(evaluation, metric_of_layer(name));

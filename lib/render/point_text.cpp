@@ -15,7 +15,7 @@ std::vector<std::string> describe_point(const IndexedMap& map, std::size_t slot)
   return lines;
 }
 
-std::vector<std::string> describe_point(const Evaluation& evaluation, const PointBlocks& points, std::size_t slot) {
+std::vector<std::string> describe_point(const EvaluatedPair& evaluation, const PointBlocks& points, std::size_t slot) {
   const MapPair& pair = evaluation.pair;
   const bool of_reference = &points == &pair.reference.index.points;
   const NearestPairs pairs = of_reference ? pair.reference_to_estimate() : pair.estimate_to_reference();

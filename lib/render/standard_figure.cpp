@@ -4,14 +4,14 @@
 
 namespace cmap {
 
-std::vector<std::string> standard_panels(const Evaluation& evaluation) {
+std::vector<std::string> standard_panels(const EvaluatedPair& evaluation) {
   std::vector<std::string> panels{"reference", "estimate"};
   if (evaluation.recall) panels.emplace_back("lcr");
   panels.emplace_back(evaluation.pair.has_color() ? "color-distance" : "distance");
   return panels;
 }
 
-void write_standard_figure(const Evaluation& evaluation, const std::filesystem::path& name, OutputFile& file) {
+void write_standard_figure(const EvaluatedPair& evaluation, const std::filesystem::path& name, OutputFile& file) {
   std::vector<Layer> layers;
   for (const std::string& panel : standard_panels(evaluation)) layers.push_back(make_layer(evaluation, panel));
   const FigureOptions options;

@@ -104,7 +104,7 @@ struct PageData {
   std::string points;
 };
 
-PageData page_data(const Json& report, const Evaluation& evaluation) {
+PageData page_data(const Json& report, const EvaluatedPair& evaluation) {
   const MapPair& pair = evaluation.pair;
   const LocalColorRecall* recall = evaluation.recall ? &*evaluation.recall : nullptr;
   const auto [n_reference, n_estimate] = points_of_maps(pair);
@@ -136,7 +136,7 @@ PageData page_data(const Json& report, const Evaluation& evaluation) {
 }
 
 /// Of one map: its colors, where it has them, and its height.
-PageData page_data(const Json& report, const MapEvaluation& evaluation) {
+PageData page_data(const Json& report, const EvaluatedMap& evaluation) {
   const IndexedMap& map = evaluation.map;
   const PackedMap packed = pack_map(map, evenly_spread_slots(map.index.points, kPointsOfPage));
   Json layers = Json::array();
@@ -168,11 +168,11 @@ void write_page(const Json& report, const PageData& data, OutputFile& file) {
 
 }  // namespace
 
-void write_html_report(const Json& report, const Evaluation& evaluation, OutputFile& file) {
+void write_html_report(const Json& report, const EvaluatedPair& evaluation, OutputFile& file) {
   write_page(report, page_data(report, evaluation), file);
 }
 
-void write_html_report(const Json& report, const MapEvaluation& evaluation, OutputFile& file) {
+void write_html_report(const Json& report, const EvaluatedMap& evaluation, OutputFile& file) {
   write_page(report, page_data(report, evaluation), file);
 }
 

@@ -28,11 +28,11 @@ class TumFr1 : public ::testing::Test {
   }
   static Json fields(const std::string& metric) { return fields_of(*evaluation_, metric); }
 
-  static inline std::optional<Evaluation> evaluation_;
+  static inline std::optional<EvaluatedPair> evaluation_;
 };
 
 /// The number of a report that a key of golden/tum_fr1.json stands for: "cd", "fitness@0.05".
-Json golden_number(const Evaluation& evaluation, const std::string& key) {
+Json golden_number(const EvaluatedPair& evaluation, const std::string& key) {
   static const std::map<std::string, std::pair<std::string, std::string>> kPlaces{
       {"chamfer_l1_sum", {"chamfer", "/value"}},
       {"chamfer_l1_mean", {"chamfer", "/variants/l1_mean"}},
@@ -91,7 +91,7 @@ TEST(AuthorsTool, EveryNumberOfItsReport) {
   test::RecordComparison comparison({1e-9, 0.0}, worst);
   comparison.compare("alias", golden.at("metrics"), peer_fields(evaluated(), "color-map-evaluation"));
   options = EvaluationOptions{};  // whose definitions are the same
-  const Evaluation ours = evaluated();
+  const EvaluatedPair ours = evaluated();
   comparison.compare("CD", golden.at("metrics").at("CD"), fields_of(ours, "color_distance").at("value"));
   comparison.compare("CF", golden.at("metrics").at("CF_dB"), fields_of(ours, "color_fidelity").at("value"));
   comparison.compare("CCS", golden.at("metrics").at("CCS"), fields_of(ours, "color_consistency").at("value"));
@@ -195,7 +195,7 @@ TEST_F(TumFr1, FlannAgreesExceptOnTies) {
   config["index"] = "flann";
   config["as"] = Json::array();
   Pair pair = read_tum();
-  const Evaluation flann = evaluate(std::move(pair.reference), std::move(pair.estimate), options_of(config));
+  const EvaluatedPair flann = evaluate(std::move(pair.reference), std::move(pair.estimate), options_of(config));
   const std::size_t n_ties = count_ties(evaluation_->pair.nearest_in_reference, flann.pair.nearest_in_reference) +
                              count_ties(evaluation_->pair.nearest_in_estimate, flann.pair.nearest_in_estimate);
   std::cout << "  " << n_ties << " ties\n";

@@ -87,7 +87,7 @@ TEST(Evaluation, VoxelsTooSmallAreRefusedForWhateverUsesThem) {
 }
 
 TEST(Evaluation, NothingElseIsComputed) {
-  const Evaluation found = evaluate(kReference, kEstimate, options_for({"chamfer"}));
+  const EvaluatedPair found = evaluate(kReference, kEstimate, options_for({"chamfer"}));
   EXPECT_FALSE(found.recall.has_value());
   EXPECT_TRUE(found.peers.empty());
   EXPECT_EQ(warning_ids(found.warnings), kNone) << "no voxel qualifies for AWD, but nobody asked";
@@ -163,7 +163,7 @@ TEST(Evaluation, MapsWithoutColorGetNullsAndAWarning) {
       {{kReference, bare_estimate}, "the estimate has no color"},
       {{bare_reference, bare_estimate}, "both maps have no color"}};
   for (const auto& [maps, says] : cases) {
-    const Evaluation found = evaluate(maps.first, maps.second, EvaluationOptions{});
+    const EvaluatedPair found = evaluate(maps.first, maps.second, EvaluationOptions{});
     ASSERT_THAT(warning_ids(found.warnings), Contains("no_color"));
     EXPECT_THAT(found.warnings[0].message, HasSubstr(says));
     for (const char* id : {"color_distance", "color_fidelity", "local_color_recall", "color_consistency"}) {
@@ -252,7 +252,7 @@ TEST(Evaluation, CropAndThinningAreWhatIsCompared) {
   EvaluationOptions options = options_for({"geometry"});
   options.crop = Box3d{{-1, -1, -1}, {9, 4, 1}};
   options.voxel_m = 100.0;
-  const Evaluation found = evaluate(kReference, kEstimate, options);
+  const EvaluatedPair found = evaluate(kReference, kEstimate, options);
   EXPECT_EQ(found.pair.reference.size(), 1U);
   EXPECT_EQ(fields(found, "chamfer").at("value"), 2 * std::hypot(0.0, 1.625)) << "(4, 0, 0) and (4, 1.625, 0)";
 }

@@ -46,7 +46,7 @@ TEST(Execution, TwoEvaluationsAtATimeDoNotDisturbEachOther) {
              all_alone = fields_of(evaluate(b, a, all).metrics);
   for (int round = 0; round < 3; ++round) {
     Told of_one, of_two;
-    std::future<Evaluation> other = std::async(
+    std::future<EvaluatedPair> other = std::async(
         std::launch::async, [&] { return evaluate(a, b, geometry, Eigen::Matrix4d::Identity(), of_one.execution(1)); });
     const Evaluation mine = evaluate(b, a, all, Eigen::Matrix4d::Identity(), of_two.execution(2));
     const Evaluation found = other.get();

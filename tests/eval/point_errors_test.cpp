@@ -61,23 +61,23 @@ const PointCloud kReference =
     small_map({{0, 0, 0}, {8, 0, 0}, {0, 5.25f, 0}}, {Rgb8{0, 0, 0}, Rgb8{0, 255, 0}, Rgb8{51, 0, 0}});
 const PointCloud kEstimate = small_map({{8, 3, 0}, {0, 0.25f, 0}}, {Rgb8{0, 255, 0}, Rgb8{51, 0, 0}});
 
-using Writer = void (*)(const Evaluation&, OutputFile&);
+using Writer = void (*)(const EvaluatedPair&, OutputFile&);
 
-void write(Writer errors, const Evaluation& evaluation, const std::filesystem::path& path) {
+void write(Writer errors, const EvaluatedPair& evaluation, const std::filesystem::path& path) {
   OutputFile file(path);
   errors(evaluation, file);
   file.commit();
 }
 
-Columns written(Writer errors, const Evaluation& evaluation) {
+Columns written(Writer errors, const EvaluatedPair& evaluation) {
   const testing::TempFolder folder;
   write(errors, evaluation, folder / "errors.ply");
   return read_columns(folder / "errors.ply");
 }
 
-Columns estimate_errors(const Evaluation& evaluation) { return written(write_estimate_errors, evaluation); }
+Columns estimate_errors(const EvaluatedPair& evaluation) { return written(write_estimate_errors, evaluation); }
 
-Columns reference_errors(const Evaluation& evaluation) { return written(write_reference_errors, evaluation); }
+Columns reference_errors(const EvaluatedPair& evaluation) { return written(write_reference_errors, evaluation); }
 
 TEST(EstimateErrors, AreScalarFieldsInOriginalOrder) {
   const Columns columns = estimate_errors(evaluate(kReference, kEstimate, EvaluationOptions{}));
@@ -111,7 +111,7 @@ TEST(ReferenceErrors, HaveNoRecallWhereItWasNotComputed) {
 
 TEST(PointErrors, HaveNoColorWhereAMapHasNone) {
   const PointCloud bare = small_map({{0, 0, 1}});
-  const Evaluation evaluation = evaluate(kReference, bare, EvaluationOptions{});
+  const EvaluatedPair evaluation = evaluate(kReference, bare, EvaluationOptions{});
   EXPECT_THAT(estimate_errors(evaluation).types, ElementsAre(Pair("x", "float"), Pair("y", "float"), Pair("z", "float"),
                                                              Pair("scalar_distance_m", "float")));
   const Columns columns = reference_errors(evaluation);
@@ -125,7 +125,7 @@ TEST(PointErrors, AreOfTheMapsAsTheyWereCompared) {
   options.crop = Box3d{{-1, -1, -1}, {1, 9, 1}};
   Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
   T(1, 3) = 1.0;
-  const Evaluation evaluation = evaluate(kReference, kEstimate, options, T);
+  const EvaluatedPair evaluation = evaluate(kReference, kEstimate, options, T);
   EXPECT_THAT(estimate_errors(evaluation).values.at("y"), ElementsAre(1.25)) << "moved and cropped";
   EXPECT_THAT(reference_errors(evaluation).values.at("y"), ElementsAre(0, 5.25)) << "cropped";
 }
@@ -169,7 +169,7 @@ TEST(PointErrors, WriteColorsOfAnyStorageAs8Bit) {
 }
 
 TEST(PointErrors, AnUnwritableFileIsNamed) {
-  const Evaluation evaluation = evaluate(kReference, kEstimate, options_for({"chamfer"}));
+  const EvaluatedPair evaluation = evaluate(kReference, kEstimate, options_for({"chamfer"}));
   for (const char* path : {"/no/such/folder/errors.ply", "/dev/full"}) {
     for (Writer errors : {&write_estimate_errors, &write_reference_errors}) {
       EXPECT_THAT(refusal_of<OutputError>([&] { write(errors, evaluation, path); }), HasSubstr(path));

@@ -27,8 +27,7 @@ MetricRecords records(double fidelity_db, double psnr_db) {
 }
 
 Evaluation evaluation(double fidelity_db = NAN, double psnr_db = NAN) {
-  const auto map = [] { return IndexedMap(test::gray_map({{0, 0, 0}})); };
-  return {.metrics = records(fidelity_db, psnr_db), .pair = {map(), map(), {}, {}}};
+  return {.metrics = records(fidelity_db, psnr_db)};
 }
 
 EvaluationOptions all_metrics() {
@@ -112,7 +111,7 @@ TEST(Requirement, AnInfiniteFidelityIsBestOfAll) {
 }
 
 TEST(Requirement, OfOneMap) {
-  MapEvaluation map{.map = IndexedMap(test::gray_map({{0, 0, 0}}))};
+  MapEvaluation map;
   map.metrics = MetricRecords({{find_metric("point_spacing"), Record{.value = 0.25}.add("mean", NAN)}});
   const auto found = [&](const char* text) { return check(parse_map_requirement(text, {}), map); };
   EXPECT_TRUE(found("point_spacing<=0.25").holds);

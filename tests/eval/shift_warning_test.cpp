@@ -23,7 +23,7 @@ PointCloud map_at(const Eigen::Vector3d& shift) {
 /// What is said of two maps and the files they came from.
 std::vector<std::string> said(const PointCloud& reference, const PointCloud& estimate,
                               const std::filesystem::path& reference_file, const std::filesystem::path& estimate_file) {
-  Evaluation evaluation = evaluate(reference, estimate, options_for({"chamfer"}));
+  EvaluatedPair evaluation = evaluate(reference, estimate, options_for({"chamfer"}));
   warn_about_shifts(evaluation, reference_file, estimate_file);
   std::vector<std::string> messages;
   for (const Warning& warning : evaluation.warnings) {
@@ -64,7 +64,7 @@ TEST_F(Files, AShiftThatDoesNotHelpIsNotNamed) {
 TEST_F(Files, NothingIsSaidOfATransformThatWasGiven) {
   Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
   T(0, 3) = 100;
-  Evaluation evaluation = evaluate(map_at(kPlace), map_at({0, 0, 0}), options_for({"chamfer"}), T);
+  EvaluatedPair evaluation = evaluate(map_at(kPlace), map_at({0, 0, 0}), options_for({"chamfer"}), T);
   warn_about_shifts(evaluation, plain, with_shift);
   EXPECT_THAT(test::warning_ids(evaluation.warnings), Not(Contains("shift_found")));
 }

@@ -32,7 +32,7 @@ TEST(ColorOf, ClampsAndKnowsNoValue) {
 }
 
 /// A recalled point, one of the wrong color, one without cover.
-Evaluation three_points() {
+EvaluatedPair three_points() {
   return evaluate(test::small_map({{0, 0, 0}, {10, 0, 0}, {20, 0, 0}}, {{200, 0, 0}, {0, 200, 0}, {0, 0, 200}}),
                   test::small_map({{0, 0, 0}, {10, 0, 0.25f}}, {{200, 0, 0}, {0, 0, 0}}),
                   test::options_for({"chamfer", "color_distance", "local_color_recall"}));
@@ -46,7 +46,7 @@ Rgb8 color_at_x(const Layer& layer, double x) {
 }
 
 TEST(MakeLayer, RecallHasItsThreeClasses) {
-  const Evaluation evaluation = three_points();
+  const EvaluatedPair evaluation = three_points();
   const Layer layer = make_layer(evaluation, "lcr");
   EXPECT_EQ(color_at_x(layer, 0.0), (Rgb8{0, 114, 178}));
   EXPECT_EQ(color_at_x(layer, 10.0), (Rgb8{213, 94, 0}));
@@ -60,7 +60,7 @@ TEST(MakeLayer, RecallHasItsThreeClasses) {
 }
 
 TEST(MakeLayer, HeatMapsShowTheirValues) {
-  const Evaluation evaluation = three_points();
+  const EvaluatedPair evaluation = three_points();
   const LayerOptions to_half{{{0.0, 0.5}}, ColorMap::kTurbo, false};
   const Layer distance = make_layer(evaluation, "distance", to_half);
   EXPECT_EQ(distance.points, &evaluation.pair.estimate.index.points);
@@ -81,14 +81,14 @@ TEST(MakeLayer, VoxelsPaintTheirPoints) {
   const PointCloud reference =
       test::small_map({{0.25f, 0.5f, 0.25f}, {0.75f, 0.5f, 0.25f}, {5.5f, 0.5f, 0.25f}}, colors);
   const PointCloud estimate = test::small_map({{0.25f, 0.5f, 0.5f}, {0.75f, 0.5f, 0.5f}, {5.5f, 0.5f, 0.5f}}, colors);
-  const Evaluation evaluation = evaluate(reference, estimate, options);
+  const EvaluatedPair evaluation = evaluate(reference, estimate, options);
   const Rgb8 none{160, 160, 160};
   const Layer spread = make_layer(evaluation, "ccs", {{{0.0, 1.0}}, std::nullopt, false});
   EXPECT_EQ(color_at_x(spread, 0.25), color_table(ColorMap::kInferno)[128]);  // variance of 0 and 1: 0.5
   EXPECT_EQ(color_at_x(spread, 0.75), color_table(ColorMap::kInferno)[128]);
   EXPECT_EQ(color_at_x(spread, 5.5), color_table(ColorMap::kInferno)[0]) << "a single point counts as 0";
   options.ccs_singletons = Singletons::kExclude;
-  const Evaluation excluding = evaluate(reference, estimate, options);
+  const EvaluatedPair excluding = evaluate(reference, estimate, options);
   EXPECT_EQ(color_at_x(make_layer(excluding, "ccs"), 5.5), none);
   const Layer distance = make_layer(evaluation, "wasserstein", {{{0.0, 0.5}}, std::nullopt, false});
   EXPECT_EQ(color_at_x(distance, 0.75), color_table(ColorMap::kViridis)[128]);  // 0.25 m of 0.5 m
@@ -102,7 +102,7 @@ TEST(MakeLayer, PointsWithoutColorHaveNoValue) {
   PointCloud reference = test::small_map({{0, 0, 0}, {10, 0, 0}}), estimate = reference;
   reference.colors = Array<RgbF>{{0, 0, 0}, {NAN, NAN, NAN}};
   estimate.colors = Array<RgbF>{{0, 0, 0}, {1, 1, 1}};
-  const Evaluation evaluation = evaluate(reference, estimate, test::options_for({"color"}));
+  const EvaluatedPair evaluation = evaluate(reference, estimate, test::options_for({"color"}));
   const Rgb8 none{160, 160, 160};
   for (const char* name : {"color-distance", "delta-e"}) {
     EXPECT_NE(color_at_x(make_layer(evaluation, name), 0.0), none) << name;
@@ -115,13 +115,13 @@ TEST(MakeLayer, PointsWithoutColorHaveNoValue) {
 }
 
 TEST(MakeLayer, MapsKeepTheirColors) {
-  const Evaluation evaluation = three_points();
+  const EvaluatedPair evaluation = three_points();
   EXPECT_EQ(color_at_x(make_layer(evaluation, "reference"), 20.0), (Rgb8{0, 0, 200}));
   EXPECT_EQ(color_at_x(make_layer(evaluation, "estimate"), 10.0), (Rgb8{0, 0, 0}));
 }
 
 TEST(MakeLayer, RefusesWhatTheDataCannotGive) {
-  const Evaluation plain =
+  const EvaluatedPair plain =
       evaluate(test::small_map({{0, 0, 0}}), test::small_map({{0, 0, 1}}), test::options_for({"chamfer"}));
   for (const char* name : {"lcr", "color-distance", "delta-e", "ccs"}) {
     EXPECT_THAT(test::refusal_of<UnsupportedError>([&] { make_layer(plain, name); }), HasSubstr(name));

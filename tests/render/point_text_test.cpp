@@ -16,7 +16,7 @@ TEST(DescribePoint, OfOneMap) {
 }
 
 TEST(DescribePoint, OfAPair) {
-  const Evaluation evaluation =
+  const EvaluatedPair evaluation =
       evaluate(test::small_map({{0, 0, 0}}, {{0, 0, 0}}), test::small_map({{0, 0, 0.25f}}, {{51, 0, 0}}),
                test::options_for({"chamfer", "local_color_recall"}));
   EXPECT_THAT(

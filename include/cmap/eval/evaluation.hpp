@@ -48,7 +48,7 @@ struct PeerRecord {
   std::optional<Record> record;
 };
 
-/// What the evaluation of one pair found.
+/// What the evaluation of one pair found, without the pair: small, whatever the maps' sizes.
 struct Evaluation {
   EvaluationOptions options = {};
   Eigen::Matrix4d T_ref_est = Eigen::Matrix4d::Identity();
@@ -63,6 +63,10 @@ struct Evaluation {
   MetricRecords metrics_before = {};            ///< of the estimate as it came, where it was aligned
   std::vector<Warning> warnings = {};
   std::vector<std::pair<std::string, double>> stage_seconds = {};
+};
+
+/// The same with what was evaluated, for pictures and errors a point.
+struct EvaluatedPair : Evaluation {
   MapPair pair;                                 ///< both maps after transform, crop and thinning, with their neighbors
   std::optional<LocalColorRecall> recall = {};  ///< where local_color_recall was computed
 };
@@ -74,8 +78,8 @@ struct Evaluation {
 /// consumed, as their memory is needed.
 /// Several threads may evaluate at a time, each as its `execution` says; throws Interrupted where that stops it.
 /// Bitwise the same for any number of threads and every instruction set.
-Evaluation evaluate(PointCloud reference, PointCloud estimate, const EvaluationOptions& options,
-                    const Eigen::Matrix4d& T_ref_est = Eigen::Matrix4d::Identity(), const Execution& execution = {},
-                    std::span<const Eigen::Vector3d> sensor_positions = {});
+EvaluatedPair evaluate(PointCloud reference, PointCloud estimate, const EvaluationOptions& options,
+                       const Eigen::Matrix4d& T_ref_est = Eigen::Matrix4d::Identity(), const Execution& execution = {},
+                       std::span<const Eigen::Vector3d> sensor_positions = {});
 
 }  // namespace cmap

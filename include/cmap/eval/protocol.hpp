@@ -17,7 +17,7 @@ struct ProtocolInputs {
 
 /// The whole comparison as the options say: the scores before, the alignment, the band of small motions, the
 /// evaluation. Throws as align() and evaluate() do; UsageError where align = trajectory and a trajectory is missing.
-Evaluation evaluate_by_protocol(PointCloud reference, PointCloud estimate, const EvaluationOptions& options,
-                                const ProtocolInputs& inputs = {}, const Execution& execution = {});
+EvaluatedPair evaluate_by_protocol(PointCloud reference, PointCloud estimate, const EvaluationOptions& options,
+                                   const ProtocolInputs& inputs = {}, const Execution& execution = {});
 
 }  // namespace cmap

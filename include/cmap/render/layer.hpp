@@ -65,7 +65,7 @@ std::string_view metric_of_layer(std::string_view name);
 
 /// The layer of an evaluated pair; `lcr` is of the reference, all others but `reference` of the estimate. Throws
 /// UsageError on an unknown name, UnsupportedError where the data cannot give it (no color; LCR was not computed).
-Layer make_layer(const Evaluation& evaluation, std::string_view name, const LayerOptions& options = {});
+Layer make_layer(const EvaluatedPair& evaluation, std::string_view name, const LayerOptions& options = {});
 
 /// A map's own colors, or its height where it has none.
 Layer make_layer(const IndexedMap& map, const std::string& title, const LayerOptions& options = {});

@@ -13,7 +13,7 @@ struct FigureTable {
   static constexpr const char* kModule = "figure";
   static constexpr int kTable = 1;
   void (*check_name)(const std::filesystem::path& name);
-  void (*write)(const Evaluation& evaluation, const std::filesystem::path& name, OutputFile& file);
+  void (*write)(const EvaluatedPair& evaluation, const std::filesystem::path& name, OutputFile& file);
   void (*write_drawing)(const Drawing& drawing, const std::filesystem::path& name, OutputFile& file);
 };
 
@@ -27,7 +27,7 @@ class FigureModule {
   void check_name(const std::filesystem::path& name) const { table_.check_name(name); }
 
   /// write_standard_figure of module render.
-  void write(const Evaluation& evaluation, const std::filesystem::path& name, OutputFile& file) const {
+  void write(const EvaluatedPair& evaluation, const std::filesystem::path& name, OutputFile& file) const {
     table_.write(evaluation, name, file);
   }
 
