@@ -117,8 +117,9 @@ EvaluatedPair evaluate(PointCloud reference, PointCloud estimate, const Evaluati
   CoordinateSteps steps;
   clock.run("prepare", 0.15,
             [&] { steps = prepare_clouds(reference, estimate, options, selection, T_ref_est, warnings); });
-  EvaluatedPair result{{.options = options, .T_ref_est = T_ref_est},
-                       index_and_pair(reference, estimate, options.index, clock)};
+  // On its own: g++ 12 destroys the base twice where the initializer of a member behind it throws.
+  MapPair pair = index_and_pair(reference, estimate, options.index, clock);
+  EvaluatedPair result{{.options = options, .T_ref_est = T_ref_est}, std::move(pair)};
 
   MetricInputs inputs(options, result.pair);
   const std::vector<const Metric*> metrics = selected_metrics(selection, result.pair.has_color());
