@@ -12,10 +12,7 @@
 namespace cmap {
 namespace {
 
-Box3d box_around(const MapPair& pair) {
-  const Box3d a = pair.reference.index.bounds(), b = pair.estimate.index.bounds();
-  return {a.min.cwiseMin(b.min), a.max.cwiseMax(b.max)};
-}
+Box3d box_around(const MapPair& pair) { return united(pair.reference.index.bounds(), pair.estimate.index.bounds()); }
 
 using BlockKey = std::array<std::int64_t, 3>;
 

@@ -132,7 +132,7 @@ CoordinateSteps prepare_clouds(PointCloud& reference, PointCloud& estimate, cons
   warn_about_frames(reference_body, estimate_body, warnings);
   const Box3d &a = reference_body.box, &b = estimate_body.box;
   if (gap_between(a, b) <= kFarApart_m) {
-    const Eigen::Vector3d origin = choose_origin({a.min.cwiseMin(b.min), a.max.cwiseMax(b.max)});
+    const Eigen::Vector3d origin = choose_origin(united(a, b));
     rebase(reference, origin);
     rebase(estimate, origin);
   }

@@ -33,8 +33,6 @@ std::vector<VoxelGaussian> voxel_gaussians(const PointBlocks& points, const Voxe
   return voxels;
 }
 
-Box3d united(const Box3d& a, const Box3d& b) { return {a.min.cwiseMin(b.min), a.max.cwiseMax(b.max)}; }
-
 /// Symmetric square root of a covariance.
 Eigen::Matrix3d root(const Eigen::Matrix3d& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);

@@ -27,6 +27,9 @@ struct Box3d {
   Eigen::Vector3d max;
 };
 
+/// The smallest box around both.
+inline Box3d united(const Box3d& a, const Box3d& b) { return {a.min.cwiseMin(b.min), a.max.cwiseMax(b.max)}; }
+
 /// Points of a map: world position of point i = origin + positions[i], in meters.
 ///
 /// The double-precision origin lets float offsets hold UTM coordinates without loss. `colors` has as many entries as
