@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "cmap/core/error.hpp"
+#include "cmap/geometry/rotation.hpp"
 
 namespace cmap::graph {
 namespace {
@@ -22,9 +23,7 @@ constexpr double kInformationRounding = 1e-6;
 Node node_of(const Eigen::Isometry3d& pose, const std::string& what) {
   const Eigen::Matrix3d R = pose.linear();
   if (!pose.matrix().allFinite()) fail(what + " is not finite");
-  if ((R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > kOrthonormal || R.determinant() < 0) {
-    fail(what + " has no rotation");
-  }
+  if (deviation_from_rotation(R) > kOrthonormal) fail(what + " has no rotation");
   return {pose.translation(), Eigen::Quaterniond(R).normalized(), 0.0};
 }
 

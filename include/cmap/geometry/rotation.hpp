@@ -8,13 +8,6 @@ namespace cmap {
 /// The rotation nearest to a matrix in the sense of least squares (its polar factor, determinant +1).
 Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& matrix);
 
-/// Written rotations may be this far from one (largest entry of R^T R - I) without a word.
-inline constexpr double kRotationTolerance = 1e-3;
-
-/// The last row of a matrix may be this far from 0 0 0 1: computed ones (an inverse, a product) miss it by some
-/// roundings of single precision.
-inline constexpr double kLastRowTolerance = 1e-6;
-
 /// Largest entry of |R^T R - I|; infinite where det R <= 0 or an entry is not finite, as no rotation is meant then.
 double deviation_from_rotation(const Eigen::Matrix3d& matrix);
 

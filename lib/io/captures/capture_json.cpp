@@ -5,7 +5,7 @@
 #include "bytes/input_json.hpp"
 #include "captures/picture_fit.hpp"
 #include "cmap/core/error.hpp"
-#include "cmap/geometry/rotation.hpp"
+#include "poses/written_rotation.hpp"
 
 namespace cmap {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "captures/picture_fit.hpp"
 #include "cmap/geometry/order_statistics.hpp"
-#include "cmap/geometry/rotation.hpp"
+#include "poses/written_rotation.hpp"
 
 namespace cmap {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "clouds/point_names.hpp"
-#include "cmap/geometry/rotation.hpp"
+#include "poses/written_rotation.hpp"
 
 namespace cmap {
 namespace {

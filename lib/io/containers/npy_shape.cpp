@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 
-#include "cmap/geometry/rotation.hpp"
+#include "poses/written_rotation.hpp"
 
 namespace cmap {
 namespace {

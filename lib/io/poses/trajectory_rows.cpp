@@ -4,8 +4,8 @@
 #include <cctype>
 #include <cmath>
 
-#include "cmap/geometry/rotation.hpp"
 #include "cmap/io/number_text.hpp"
+#include "poses/written_rotation.hpp"
 
 namespace cmap {
 namespace {

@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "cmap/geometry/rotation.hpp"
 #include "cmap/io/line_reader.hpp"
 #include "containers/npy_array.hpp"
 #include "poses/transform_numbers.hpp"
+#include "poses/written_rotation.hpp"
 
 namespace cmap {
 namespace {

@@ -15,6 +15,7 @@
 #include "cmap/core/error.hpp"
 #include "cmap/core/execution.hpp"
 #include "cmap/core/parallel.hpp"
+#include "cmap/geometry/rotation.hpp"
 #include "cmap/io/capture.hpp"
 #include "cmap/io/image_file.hpp"
 #include "cmap/io/output_file.hpp"
@@ -45,10 +46,7 @@ CaptureCalibration stated_calibration(const CaptureOptions& o) {
   calibration.T_lidar_camera = T_lidar_camera_of(o.mount);
   calibration.T_lidar_camera.translation() += o.stated.camera_translation_error_m;
   const Eigen::Vector3d turn = o.stated.camera_rotation_error_deg * (std::numbers::pi / 180.0);
-  if (turn.norm() > 0.0) {
-    calibration.T_lidar_camera.linear() =
-        calibration.T_lidar_camera.linear() * Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
-  }
+  calibration.T_lidar_camera.linear() = calibration.T_lidar_camera.linear() * rotation_from(turn);
   return calibration;
 }
 

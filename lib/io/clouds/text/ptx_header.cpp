@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "cmap/geometry/rotation.hpp"
 #include "cmap/io/number_text.hpp"
+#include "poses/written_rotation.hpp"
 
 namespace cmap {
 namespace {
