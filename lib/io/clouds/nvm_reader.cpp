@@ -1,9 +1,9 @@
-#include <algorithm>
-#include <cmath>
+#include <array>
 #include <vector>
 
 #include "bytes/ascii_rows.hpp"
 #include "clouds/cloud_format.hpp"
+#include "clouds/largest_part.hpp"
 #include "cmap/io/number_text.hpp"
 
 // VisualSFM's "N-View Match" (ccwu.me/vsfm/doc.html, "Output format"), which COLMAP and others write, too.
@@ -61,7 +61,7 @@ std::vector<NvmPoints> read_models(LineReader& lines) {
   return models;
 }
 
-/// The largest model; others lie in frames of their own.
+/// The largest model.
 PointCloud read_nvm(ByteSource& source, FileInfo& info) {
   info.format = "NVM";
   LineReader lines(source);
@@ -69,15 +69,9 @@ PointCloud read_nvm(ByteSource& source, FileInfo& info) {
   lines.next(header);
   const std::vector<NvmPoints> models = read_models(lines);
   if (models.empty()) source.fail("holds no points");
-  const NvmPoints& largest = *std::ranges::max_element(models, {}, &NvmPoints::size);
-  std::size_t n_others = 0;
-  for (const NvmPoints& model : models) n_others += model.size();
-  n_others -= largest.size();
-  if (n_others > 0) {
-    info.warnings.push_back(
-        {"parts_unused",
-         fmt::format("the largest of {} models is used; the others' {} points are not", models.size(), n_others)});
-  }
+  std::vector<std::size_t> sizes;
+  for (const NvmPoints& model : models) sizes.push_back(model.size());
+  const NvmPoints& largest = models[largest_part(sizes, "models", info)];
   CloudBuilder builder(source, {true, {ColorStorage::kSeparate}}, largest.size());
   RowStage stage(builder, true);
   for (const RowStage::Row& row : largest) stage.add(row);

@@ -4,6 +4,7 @@
 
 #include "bytes/ascii_rows.hpp"
 #include "clouds/cloud_format.hpp"
+#include "clouds/largest_part.hpp"
 
 namespace cmap {
 namespace {
@@ -26,21 +27,14 @@ std::size_t n_points(const OpenSfmJson& reconstruction) {
   return points == reconstruction.end() || !points->is_object() ? 0 : points->size();
 }
 
-/// The largest of the file's reconstructions; others may lie in frames of their own.
+/// The largest of the file's reconstructions.
 const OpenSfmJson& choose(const ByteSource& source, const OpenSfmJson& file, FileInfo& info) {
   if (!file.is_array() || file.empty()) source.fail("an OpenSfM reconstruction is an array of objects");
-  const auto fewer = [](const OpenSfmJson& a, const OpenSfmJson& b) { return n_points(a) < n_points(b); };
-  const auto largest = std::max_element(file.begin(), file.end(), fewer);
-  std::size_t n_others = 0;
-  for (const OpenSfmJson& reconstruction : file) n_others += n_points(reconstruction);
-  n_others -= n_points(*largest);
-  if (n_others > 0) {
-    info.warnings.push_back(
-        {"parts_unused", fmt::format("the largest of {} reconstructions is used; the others' {} points are not",
-                                     file.size(), n_others)});
-  }
-  if (n_points(*largest) == 0) source.fail("its reconstructions hold no points");
-  return *largest;
+  std::vector<std::size_t> sizes;
+  for (const OpenSfmJson& reconstruction : file) sizes.push_back(n_points(reconstruction));
+  const OpenSfmJson& largest = file[largest_part(sizes, "reconstructions", info)];
+  if (n_points(largest) == 0) source.fail("its reconstructions hold no points");
+  return largest;
 }
 
 std::array<double, 3> triple(const ByteSource& source, const std::string& id, const OpenSfmJson& point,
