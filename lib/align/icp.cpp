@@ -5,7 +5,6 @@
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
-#include <memory>
 #include <optional>
 
 #include "cmap/align/umeyama.hpp"
@@ -34,31 +33,21 @@ class MetricSteps {
   }
 
  private:
-  struct Match {
-    Eigen::Vector3d p, q;  ///< offsets from the target's origin
-    std::uint32_t target_slot;
-    double weight;  ///< 0: no match
-  };
-
-  Match match(const Similarity& local, std::size_t slot) const {
-    const NearestField& field = level_.field;
+  /// 0: no match.
+  double weight(const MatchedPoints& m) const {
     const double max_distance_m = level_.settings.max_distance_m;
-    Match m{MovingSource::moved(local, level_.source.points(), slot),
-            level_.target.index.points.offset(field.slot[slot]).cast<double>(), field.slot[slot], 0.0};
-    const double distance_m = std::sqrt(field.sq_dist[slot]);
-    if (distance_m > max_distance_m) return m;
+    if (m.distance_m > max_distance_m) return 0.0;
     const double residual_m = options_.metric == IcpMetric::kPlane
                                   ? std::abs((m.p - m.q).dot(level_.target.surface.normal(m.target_slot)))
-                                  : distance_m;
-    m.weight = robust_weight(options_.kernel, residual_m, options_.kernel_width * max_distance_m);
-    return m;
+                                  : m.distance_m;
+    return robust_weight(options_.kernel, residual_m, options_.kernel_width * max_distance_m);
   }
 
   Similarity closed_form_step(const Similarity& local) const {
     const MovingSource& source = level_.source;
     const PairMoments moments = pair_moments(source.size(), [&](std::size_t slot) {
-      const Match m = match(local, slot);
-      return WeightedPair{source.points().offset(slot).cast<double>(), m.q, m.weight};
+      const MatchedPoints m = matched_points(level_, local, slot);
+      return WeightedPair{source.points().offset(slot).cast<double>(), m.q, weight(m)};
     });
     if (moments.n < 3) fail_no_overlap(moments.n, level_.settings.max_distance_m);
     return fit_similarity(moments, {options_.with_scale, local.scale, 0.0});
@@ -72,18 +61,19 @@ class MetricSteps {
   }
 
   void add(const Similarity& local, std::size_t slot, const Eigen::Vector3d& pivot, NormalEquations& part) const {
-    const Match m = match(local, slot);
-    if (m.weight == 0.0) return;
+    const MatchedPoints m = matched_points(level_, local, slot);
+    const double pair_weight = weight(m);
+    if (pair_weight == 0.0) return;
     const Eigen::Vector3d normal = level_.target.surface.normal(m.target_slot);
     if (options_.metric == IcpMetric::kPlane) {
-      part.add_plane(m.p - pivot, m.p - m.q, normal, m.weight);
+      part.add_plane(m.p - pivot, m.p - m.q, normal, pair_weight);
       return;
     }
     const Eigen::Vector3d source_normal = local.rotation * source_surface_->surface.normal(slot);
     const Eigen::Matrix3d covariance =
         2.0 * Eigen::Matrix3d::Identity() -
         (1.0 - kPlaneThickness) * (normal * normal.transpose() + source_normal * source_normal.transpose());
-    part.add(m.p - pivot, m.p - m.q, covariance.inverse(), m.weight);
+    part.add(m.p - pivot, m.p - m.q, covariance.inverse(), pair_weight);
   }
 
   LevelMatches& level_;
@@ -115,11 +105,7 @@ std::vector<IcpLevel> coarse_to_fine(double voxel_m, double max_distance_m, int 
 
 Alignment icp(const PointCloud& source, const PointCloud& target, const Eigen::Matrix4d& T_initial,
               const IcpOptions& options) {
-  const auto steps = [&](LevelMatches& level) -> NextTransform {
-    const auto metric = std::make_shared<const MetricSteps>(level, options);
-    return [metric](const Similarity& local) { return metric->next(local); };
-  };
-  Alignment result = iterate_levels(source, target, T_initial, options, steps);
+  Alignment result = iterate_levels(source, target, T_initial, options, metric_of<MetricSteps>(options));
   result.method = kMetricNames[static_cast<std::size_t>(options.metric)];
   return result;
 }

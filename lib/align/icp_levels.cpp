@@ -60,6 +60,13 @@ Alignment iterate_levels(const PointCloud& source, const PointCloud& target, con
   return result;
 }
 
+MatchedPoints matched_points(const LevelMatches& level, const Similarity& local, std::size_t slot) {
+  const std::uint32_t target_slot = level.field.slot[slot];
+  return {MovingSource::moved(local, level.source.points(), slot),
+          level.target.index.points.offset(target_slot).cast<double>(), target_slot,
+          std::sqrt(level.field.sq_dist[slot])};
+}
+
 double lever_m(const NormalEquations& equations) {
   const double lever_m = std::sqrt(equations.H.topLeftCorner<3, 3>().trace() / equations.H.block<3, 3>(3, 3).trace());
   if (!(lever_m > 0.0)) throw UnsupportedError("the matched points have no surface: they coincide or are collinear");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 
 #include "cmap/align/icp.hpp"
 #include "cmap/core/parallel.hpp"
@@ -28,6 +29,14 @@ struct SourceSurface {
   Surface surface;
 };
 
+/// A source's point at `local`, and the target's nearest: offsets from the target's origin.
+struct MatchedPoints {
+  Eigen::Vector3d p, q;
+  std::uint32_t target_slot;
+  double distance_m;
+};
+MatchedPoints matched_points(const LevelMatches& level, const Similarity& local, std::size_t slot);
+
 /// The transform after one more step, from the level's matches at `local`.
 using NextTransform = std::function<Similarity(const Similarity& local)>;
 
@@ -35,6 +44,15 @@ using NextTransform = std::function<Similarity(const Similarity& local)>;
 /// steps (options.metric is not read). Fills everything but the method's name. Throws as icp() does.
 Alignment iterate_levels(const PointCloud& source, const PointCloud& target, const Eigen::Matrix4d& T_initial,
                          const IcpOptions& options, const std::function<NextTransform(LevelMatches&)>& metric);
+
+/// The metric whose steps a class makes: Steps(level, options) with next(local). `options` must outlive it.
+template <class Steps>
+std::function<NextTransform(LevelMatches&)> metric_of(const IcpOptions& options) {
+  return [&options](LevelMatches& level) -> NextTransform {
+    const auto steps = std::make_shared<const Steps>(level, options);
+    return [steps](const Similarity& local) { return steps->next(local); };
+  };
+}
 
 /// The equations of all slots, in a fixed order; add(slot, part) adds those of one. Throws UnsupportedError where fewer
 /// than 3 match.

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <memory>
 
 #include "icp_levels.hpp"
 #include "methods/icp_method.hpp"
@@ -24,11 +23,9 @@ class SymmetricSteps {
 
  private:
   void add(const Similarity& local, std::size_t slot, const Eigen::Vector3d& pivot, NormalEquations& part) const {
+    const auto [p, q, target_slot, distance_m] = matched_points(level_, local, slot);
     const double max_distance_m = level_.settings.max_distance_m;
-    if (level_.field.sq_dist[slot] > max_distance_m * max_distance_m) return;
-    const std::uint32_t target_slot = level_.field.slot[slot];
-    const Eigen::Vector3d p = MovingSource::moved(local, level_.source.points(), slot);
-    const Eigen::Vector3d q = level_.target.index.points.offset(target_slot).cast<double>();
+    if (distance_m > max_distance_m) return;
     const Eigen::Vector3d normal =
         mean_normal(local.rotation * source_surface_.surface.normal(slot), level_.target.surface.normal(target_slot));
     const double width_m = options_.kernel_width * max_distance_m;
@@ -64,11 +61,7 @@ class SymmetricSteps {
 Alignment run_symmetric(const PointCloud& source, const PointCloud& target, const AlignOptions& options,
                         double voxel_m) {
   const IcpOptions how = icp_options(options, voxel_m);
-  const auto steps = [&](LevelMatches& level) -> NextTransform {
-    const auto symmetric = std::make_shared<const SymmetricSteps>(level, how);
-    return [symmetric](const Similarity& local) { return symmetric->next(local); };
-  };
-  Alignment result = iterate_levels(source, target, options.T_initial, how, steps);
+  Alignment result = iterate_levels(source, target, options.T_initial, how, metric_of<SymmetricSteps>(how));
   result.method = "symmetric";
   return result;
 }
