@@ -60,6 +60,12 @@ void check_options(const OptionFields& fields, const std::string& where) {
   }
 }
 
+OptionFields joined(const std::vector<OptionFields>& lists) {
+  OptionFields all;
+  for (const OptionFields& list : lists) all.insert(all.end(), list.begin(), list.end());
+  return all;
+}
+
 std::vector<std::string> names_of(const OptionFields& fields) {
   std::vector<std::string> names;
   for (const OptionField& field : fields) names.emplace_back(field.name);

@@ -103,12 +103,8 @@ OptionFields reading_fields(EvaluationOptions& o) {
 }  // namespace
 
 OptionFields option_fields(EvaluationOptions& options) {
-  OptionFields all;
-  for (const auto group :
-       {metric_fields, map_fields, further_fields, alignment_fields, sensitivity_fields, reading_fields}) {
-    std::ranges::move(group(options), std::back_inserter(all));
-  }
-  return all;
+  return joined({metric_fields(options), map_fields(options), further_fields(options), alignment_fields(options),
+                 sensitivity_fields(options), reading_fields(options)});
 }
 
 ReadOptions read_options(const EvaluationOptions& options, bool sha256) {

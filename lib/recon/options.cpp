@@ -159,13 +159,9 @@ const EnumNames<SessionRegistrationMethod>& registration_method_names() {
 }
 
 OptionFields option_fields(ReconstructionOptions& o) {
-  OptionFields fields;
-  for (const OptionFields& part : {input_fields(o.input), placement_fields(o.prefusion.placement),
-                                   prefusion_fields(o.prefusion), registration_fields(o.registration),
-                                   link_fields(o.registration.link), graph_fields(o), fusion_fields(o.fusion)}) {
-    fields.insert(fields.end(), part.begin(), part.end());
-  }
-  return fields;
+  return joined({input_fields(o.input), placement_fields(o.prefusion.placement), prefusion_fields(o.prefusion),
+                 registration_fields(o.registration), link_fields(o.registration.link), graph_fields(o),
+                 fusion_fields(o.fusion)});
 }
 
 void apply_reconstruction_config(ReconstructionOptions& options, const std::string& json_text,
@@ -191,9 +187,6 @@ void apply_reconstruction_preset(ReconstructionOptions& options, const std::stri
   options.graph.lidar_priors = false;
 }
 
-Json to_json(const ReconstructionOptions& options) {
-  ReconstructionOptions copy = options;
-  return options_json(option_fields(copy));
-}
+Json to_json(const ReconstructionOptions& options) { return options_json_of(options); }
 
 }  // namespace cmap

@@ -6,9 +6,6 @@
 
 namespace cmap {
 
-nlohmann::ordered_json to_json(const EvaluationOptions& options) {
-  EvaluationOptions copy = options;
-  return options_json(option_fields(copy));
-}
+nlohmann::ordered_json to_json(const EvaluationOptions& options) { return options_json_of(options); }
 
 }  // namespace cmap

@@ -121,6 +121,9 @@ void check_options(const OptionFields& fields, const std::string& where);
 
 std::vector<std::string> names_of(const OptionFields& fields);
 
+/// The lists one after the other.
+OptionFields joined(const std::vector<OptionFields>& lists);
+
 // A field of each type.
 inline OptionField field(const char* name, double& v, const NumberRange& range = kAnyNumber, const char* unit = "",
                          const char* help = "") {

@@ -18,6 +18,12 @@ void set_from_json(const OptionField& field, const nlohmann::ordered_json& value
 nlohmann::ordered_json options_json(const OptionFields& fields);
 nlohmann::ordered_json value_json(const OptionField& field);
 
+/// The same of a struct that an option_fields() describes.
+template <class Options>
+nlohmann::ordered_json options_json_of(Options options) {
+  return options_json(option_fields(options));
+}
+
 /// An option as a command line sets it.
 struct OptionAssignment {
   std::string name;

@@ -54,13 +54,11 @@ inline OptionField kind_field(SceneChoice& o) { return field("kind", o.kind, kSc
 
 /// Those of the kind that it is: others are unknown.
 inline OptionFields option_fields(SceneChoice& o) {
-  OptionFields fields{kind_field(o), field("seed", o.seed, kNotNegative)};
-  const auto add = [&](const OptionFields& more) { fields.insert(fields.end(), more.begin(), more.end()); };
-  if (o.kind == SceneKind::kTown) add(option_fields(o.town));
-  if (o.kind == SceneKind::kIndoor) add(option_fields(o.indoor));
-  if (o.kind == SceneKind::kAerial) add(option_fields(o.aerial));
-  if (o.kind == SceneKind::kMesh) add({field("mesh", o.mesh)});
-  return fields;
+  const OptionFields all{kind_field(o), field("seed", o.seed, kNotNegative)};
+  if (o.kind == SceneKind::kTown) return joined({all, option_fields(o.town)});
+  if (o.kind == SceneKind::kIndoor) return joined({all, option_fields(o.indoor)});
+  if (o.kind == SceneKind::kAerial) return joined({all, option_fields(o.aerial)});
+  return joined({all, {field("mesh", o.mesh)}});
 }
 
 inline OptionFields option_fields(RouteChoice& o) {
