@@ -61,6 +61,16 @@ function(cmap_list_objects prefix type namespace)
   set(${prefix}_POINTERS "${pointers}" PARENT_SCOPE)
 endfunction()
 
+# cmap_require_tests(what name ...): each name of a list has a <name>_test.cpp in this folder.
+function(cmap_require_tests what)
+  foreach(name IN LISTS ARGN)
+    if(NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cpp)
+      file(RELATIVE_PATH test ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cpp)
+      message(FATAL_ERROR "the ${what} ${name} has no test: write ${test}")
+    endif()
+  endforeach()
+endfunction()
+
 # cmap_add_tests(module name ...) adds each <name>_test.cpp of this folder to the program tests_<module>, one link for all of
 # them, and makes the CTest test "<module>/<name>" of it.
 function(cmap_add_tests module)

@@ -1,19 +1,17 @@
 #include "cmap/eval/evaluation.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <functional>
 
-#include "cmap/core/execution.hpp"
-#include "cmap/core/parallel.hpp"
-#include "eval/eval_testing.hpp"
+#include "eval/hand_maps.hpp"
 
 namespace cmap {
 namespace {
 
 using Json = nlohmann::ordered_json;
 using test::gray_map;
+using test::kEstimate;
 using test::kNone;
+using test::kReference;
 using test::options_for;
 using test::painted_sheet;
 using test::refusal_of;
@@ -25,36 +23,12 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-/// Values found by hand: distances 0.25 and 3 one way; 0.25, 3 and 5 the other.
-const PointCloud kReference =
-    small_map({{0, 0, 0}, {8, 0, 0}, {0, 5.25f, 0}}, {Rgb8{0, 0, 0}, Rgb8{0, 255, 0}, Rgb8{0, 0, 0}});
-const PointCloud kEstimate = small_map({{0, 0.25f, 0}, {8, 3, 0}}, {Rgb8{0, 0, 0}, Rgb8{0, 0, 0}});
-
 Json fields(const Evaluation& evaluation, std::string_view id) { return test::fields_of(evaluation.metrics, id); }
 
 std::vector<std::string> ids(const Evaluation& evaluation) {
   std::vector<std::string> result;
   for (const MetricRecord& record : evaluation.metrics) result.emplace_back(record.info->id);
   return result;
-}
-
-/// Everything that was found, with the options of every kind of metric.
-Json everything(const Evaluation& evaluation) {
-  Json all = test::fields_of(evaluation.metrics);
-  for (const PeerRecord& peer : evaluation.peers) all["aliases"][peer.tool] = test::peer_fields(evaluation, peer.tool);
-  all["overlap"] = evaluation.overlap;
-  all["rmse_m"] = evaluation.rmse_m;
-  for (const Warning& warning : evaluation.warnings) all["warnings"][warning.id] = warning.message;
-  return all;
-}
-
-EvaluationOptions all_options() {
-  EvaluationOptions options = options_for({"all"});
-  options.lcr_curve = true;
-  options.as = test::tools({"color-map-evaluation", "cloudanalyzer", "mapeval", "open3d", "mpeg", "cloudcompare"});
-  options.mme_radius_m = 0.3;
-  options.ccs_voxel_m = 0.5;
-  return options;
 }
 
 TEST(Evaluation, HandComputed) {
@@ -257,211 +231,6 @@ TEST(Evaluation, CropAndThinningAreWhatIsCompared) {
   EXPECT_EQ(fields(found, "chamfer").at("value"), 2 * std::hypot(0.0, 1.625)) << "(4, 0, 0) and (4, 1.625, 0)";
 }
 
-TEST(Evaluation, OtherToolsAreAddedByName) {
-  EvaluationOptions options = options_for({"chamfer"});
-  options.as = test::tools({"cloudcompare", "mpeg"});
-  const Evaluation found = evaluate(kReference, kEstimate, options);
-  EXPECT_EQ(found.peers.size(), 2U);
-  EXPECT_EQ(test::peer_fields(found, "cloudcompare").at("mean"), 1.625);
-  EXPECT_TRUE(test::peer_fields(found, "mpeg").at("symmetric").is_object());
-  const Evaluation bare = evaluate(small_map({{0, 0, 0}}), kEstimate, options);
-  EXPECT_TRUE(test::peer_fields(bare, "mpeg").is_null());
-  EXPECT_THAT(warning_ids(bare.warnings), Contains("mpeg_needs_color"));
-}
-
-/// Two voxels of trace 0.02, as in the example of the authors' tool, and a lone point.
-const std::vector<Eigen::Vector3f> kSpots{{0.01f, 0, 0}, {0.02f, 0, 0}, {1.01f, 0, 0}, {1.02f, 0, 0}, {5, 5, 5}};
-const std::vector<Rgb8> kSpotColors{{0, 0, 0}, {51, 0, 0}, {0, 102, 0}, {0, 153, 0}, {9, 9, 9}};
-const PointCloud kSpotMap = small_map(kSpots, kSpotColors);
-
-TEST(Evaluation, ConsistencyHasItsValueUnderBothRules) {
-  EvaluationOptions options = options_for({"CCS"});
-  const std::tuple<Singletons, double, int> cases[] = {{Singletons::kZero, 0.02 * 2 / 3, 3},
-                                                       {Singletons::kExclude, 0.02, 2}};
-  for (const auto& [singletons, value, n] : cases) {
-    options.ccs_singletons = singletons;
-    const Evaluation found = evaluate(kSpotMap, kSpotMap, options);
-    const Json record = fields(found, "color_consistency");
-    for (const Json& numbers : {record, record.at("reference")}) {
-      EXPECT_DOUBLE_EQ(numbers.at("value").get<double>(), value);
-      EXPECT_DOUBLE_EQ(numbers.at("value_x100").get<double>(), 100 * value);
-      EXPECT_DOUBLE_EQ(numbers.at("zero").get<double>(), 0.02 * 2 / 3);
-      EXPECT_DOUBLE_EQ(numbers.at("exclude").get<double>(), 0.02);
-      EXPECT_DOUBLE_EQ(numbers.at("median").get<double>(), 0.02);
-      EXPECT_EQ(numbers.at("n_voxels"), n);
-      EXPECT_EQ(numbers.at("n_occupied"), 3);
-      EXPECT_EQ(numbers.at("n_singletons"), 1);
-    }
-    EXPECT_EQ(record.at("parameters"),
-              Json({{"voxel_m", 0.1}, {"singletons", name_of(singletons, singletons_names())}, {"min_points", 2}}));
-    EXPECT_EQ(warning_ids(found.warnings), kNone) << "a third of single points is no more than half";
-  }
-}
-
-TEST(Evaluation, SingletonsCanBeRefused) {
-  EvaluationOptions options = options_for({"CCS"});
-  options.ccs_singletons = Singletons::kRefuse;
-  EXPECT_THAT(refusal_of<UnsupportedError>([&] { evaluate(kSpotMap, kSpotMap, options); }),
-              HasSubstr("ccs-singletons: 1 of the evaluated map's 3 voxels of 0.1 m hold a single point"));
-  const PointCloud whole = small_map({kSpots.begin(), kSpots.end() - 1}, {kSpotColors.begin(), kSpotColors.end() - 1});
-  const Evaluation found = evaluate(kSpotMap, whole, options);
-  EXPECT_DOUBLE_EQ(fields(found, "color_consistency").at("value").get<double>(), 0.02);
-}
-
-TEST(Evaluation, AMapOfOnePointAVoxelIsWarnedOf) {
-  const std::vector<Eigen::Vector3f> apart{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {3.01f, 0, 0}};
-  const PointCloud map = gray_map(apart);
-  const Evaluation found = evaluate(map, map, options_for({"CCS"}));
-  ASSERT_THAT(warning_ids(found.warnings), ElementsAre("color_consistency_sparse"));
-  EXPECT_THAT(found.warnings[0].message, HasSubstr("3 of the evaluated map's 4 voxels of 0.1 m"));
-  // The same points three times each.
-  std::vector<Eigen::Vector3f> copies = apart;
-  for (int copy = 1; copy < 3; ++copy) copies.insert(copies.end(), apart.begin(), apart.end());
-  const Evaluation copied = evaluate(map, gray_map(copies), options_for({"CCS"}));
-  EXPECT_EQ(fields(copied, "color_consistency").at("n_singletons"), 0);
-  ASSERT_THAT(warning_ids(copied.warnings), ElementsAre("color_consistency_sparse"));
-  EXPECT_THAT(copied.warnings[0].message, HasSubstr("3 of the evaluated map's 4 voxels of 0.1 m"));
-}
-
-/// Voxel centers a tenth of a meter apart, as typed; every option that is a threshold at a tenth.
-TEST(Evaluation, ThresholdsMeanWhatWasTyped) {
-  PointCloud reference, estimate;
-  for (int i = 0; i < 12; ++i) {
-    reference.positions.push_back(Eigen::Vector3d(i, 3.0, 0.1).cast<float>());
-    estimate.positions.push_back(Eigen::Vector3d(i, 3.0, 0.2).cast<float>());
-  }
-  reference.colors = estimate.colors = Array<Rgb8>(12, Rgb8{1, 2, 3});
-  EvaluationOptions options = options_for({"all"});
-  options.thresholds_m = {0.1, 0.099};
-  options.overlap_distance_m = options.lcr_radius_m = 0.1;
-  options.color_max_distance_m = 0.1;
-  options.bootstrap = 5;
-  options.as = test::tools({"open3d", "cloudanalyzer"});
-  const Evaluation found = evaluate(reference, estimate, options);
-  const Json intervals = intervals_json(*found.intervals);
-  for (const char* id : {"fitness", "completeness", "f_score"}) {
-    const Json record = fields(found, id);
-    EXPECT_EQ(record.at("per_threshold")[0].at("value"), 1.0) << id;
-    EXPECT_EQ(record.at("per_threshold")[1].at("value"), 0.0) << id;
-    EXPECT_EQ(intervals.at("metrics").at(id).at("per_threshold")[0].at("lower"), 1.0) << id;
-  }
-  EXPECT_NEAR(fields(found, "accuracy").at("per_threshold")[0].at("value").get<double>(), 0.1, 1e-8);
-  EXPECT_EQ(found.overlap, 1.0);
-  EXPECT_EQ(fields(found, "local_color_recall").at("value"), 1.0);
-  EXPECT_EQ(fields(found, "color_distance").at("n_unmatched_estimate"), 0);
-  EXPECT_EQ(fields(found, "delta_e").at("estimate_to_reference").at("n"), 12);
-  EXPECT_EQ(fields(found, "color_distance_exposure_free").at("n_pairs"), 12);
-  EXPECT_EQ(test::peer_fields(found, "open3d").at("per_threshold")[0].at("fitness"), 0.0)
-      << "other tools compare as they do";
-  EXPECT_EQ(test::peer_fields(found, "cloudanalyzer").at("map-evaluate").at("accuracy@0.100m"), 0.0);
-}
-
-/// One of two estimated points and one of three reference points have no color: by hand.
-TEST(Evaluation, PointsWithoutColorCountForGeometryOnly) {
-  const RgbF none{NAN, NAN, NAN};
-  PointCloud reference = small_map({{0, 0.25f, 0}, {1, 0.25f, 0}, {2, 0.25f, 0}});
-  PointCloud estimate = small_map({{0, 0, 0}, {1, 0, 0}});
-  reference.colors = Array<RgbF>{{0.25f, 0, 0}, {1, 1, 1}, none};
-  estimate.colors = Array<RgbF>{{0, 0, 0}, none};
-  EvaluationOptions options = options_for({"all"});
-  options.bootstrap = 5;
-  options.as = test::tools({"mpeg", "color-map-evaluation", "cloudanalyzer"});
-  const Evaluation found = evaluate(reference, estimate, options);
-  EXPECT_EQ(fields(found, "chamfer").at("n_reference"), 3);
-  const Json cd = fields(found, "color_distance");
-  EXPECT_EQ(cd.at("value"), 0.25);
-  EXPECT_EQ(cd.at("n_estimate"), 1);
-  EXPECT_EQ(cd.at("n_unmatched_reference"), 2);
-  EXPECT_EQ(cd.at("n_without_color_estimate"), 1);
-  EXPECT_EQ(cd.at("n_without_color_reference"), 1);
-  const Json lcr = fields(found, "local_color_recall");
-  EXPECT_EQ(lcr.at("n_reference"), 2);
-  EXPECT_EQ(lcr.at("coverage"), 1.0) << "what covers needs no color";
-  EXPECT_EQ(lcr.at("value"), 0.5);
-  EXPECT_EQ(fields(found, "color_consistency").at("n_occupied"), 1);
-  EXPECT_EQ(fields(found, "color_consistency").at("n_without_color"), 1);
-  EXPECT_EQ(fields(found, "color_consistency").at("reference").at("n_occupied"), 2);
-  EXPECT_EQ(fields(found, "delta_e").at("reference_to_estimate").at("n"), 1);
-  EXPECT_NEAR(fields(found, "color_psnr").at("value").get<double>(), -20 * std::log10(0.2126 * 0.25), 1e-12);
-  EXPECT_EQ(fields(found, "color_distance_by_range").at("per_range")[3].at("n_reference"), 1);
-  EXPECT_TRUE(test::peer_fields(found, "mpeg").is_null());
-  EXPECT_TRUE(test::peer_fields(found, "color-map-evaluation").is_null());
-  EXPECT_TRUE(test::peer_fields(found, "cloudanalyzer").is_object());
-  const auto& sums = found.intervals->blocks.sums.columns;
-  EXPECT_EQ(sums.at("local_color_recall.reference.colored"), std::vector<double>{2.0});
-  EXPECT_EQ(sums.at("color_psnr.estimate.n"), std::vector<double>{1.0});
-}
-
-TEST(Evaluation, ColorsThatNoPointHasAreNone) {
-  PointCloud bare = small_map({{0, 0, 0}, {1, 0, 0}});
-  bare.colors = Array<RgbF>(2, RgbF{NAN, NAN, NAN});
-  const Evaluation found = evaluate(kReference, bare, EvaluationOptions{});
-  EXPECT_THAT(warning_ids(found.warnings), Contains("no_color"));
-  EXPECT_TRUE(fields(found, "color_distance").at("value").is_null());
-  EXPECT_THROW(evaluate(kReference, bare, options_for({"color"})), UnsupportedError);
-}
-
-TEST(Evaluation, AFlatMapHasNoEntropyAndSaysWhy) {
-  PointCloud plane;
-  for (int i = 0; i < 100; ++i) {
-    plane.positions.push_back({0.1f * static_cast<float>(i % 10), 0.1f * static_cast<float>(i / 10), 1});
-  }
-  EvaluationOptions options = options_for({"mme"});
-  options.mme_radius_m = 0.35;
-  const Evaluation found = evaluate(plane, plane, options);
-  EXPECT_TRUE(fields(found, "mean_map_entropy").at("value").is_null());
-  EXPECT_EQ(fields(found, "mean_map_entropy").at("n_flat"), 100);
-  ASSERT_THAT(warning_ids(found.warnings), ElementsAre("mean_map_entropy_flat"));
-  EXPECT_THAT(found.warnings[0].message, HasSubstr("flat to the rounding"));
-}
-
-/// Another tool's record is made at its own defaults, whatever the options say.
-TEST(Evaluation, TheAuthorsToolAtItsDefaults) {
-  const PointCloud four = small_map({kSpots.begin(), kSpots.end() - 1}, {kSpotColors.begin(), kSpotColors.end() - 1});
-  std::vector<Eigen::Vector3f> places(kSpots.begin(), kSpots.end() - 1);
-  std::vector<Rgb8> colors(kSpotColors.begin(), kSpotColors.end() - 1);
-  places.push_back({10, 0, 0});
-  colors.push_back({0, 0, 255});
-  EvaluationOptions options = options_for({"chamfer"});
-  options.as = test::tools({"color-map-evaluation"});
-  options.lcr_tau = 9.0;
-  options.lcr_radius_m = 99.0;
-  options.ccs_voxel_m = 7.0;
-  options.color_max_distance_m = 0.5;
-  const Evaluation found = evaluate(small_map(places, colors), four, options);
-  const Json record = test::peer_fields(found, "color-map-evaluation");
-  EXPECT_NEAR(record.at("CD").get<double>(), std::sqrt(1.36) / 10, 1e-15);
-  EXPECT_NEAR(record.at("CD_rgb255").get<double>(), 25.5 * std::sqrt(1.36), 1e-12);
-  EXPECT_NEAR(record.at("CF_dB").get<double>(), 18.66, 0.005);
-  EXPECT_EQ(record.at("LCR"), 0.8);
-  EXPECT_EQ(record.at("LCR_percent"), 80.0);
-  EXPECT_NEAR(record.at("CCS").get<double>(), 0.02, 1e-15);
-  EXPECT_EQ(test::peer_fields(evaluate(four, four, options), "color-map-evaluation").at("CF_dB"), "+inf");
-}
-
-/// Distances 0.25 and 3 one way; 0.25, 3 and 5 the other. Only the thresholds 0.3, 0.5 and 1 m see any: P 1/2, R 1/3.
-TEST(Evaluation, CloudAnalyzerAtItsDefaults) {
-  EvaluationOptions options = options_for({"chamfer"});
-  options.as = test::tools({"cloudanalyzer"});
-  options.thresholds_m = {7.0};
-  const Evaluation evaluation = evaluate(kReference, kEstimate, options);
-  const Json found = test::peer_fields(evaluation, "cloudanalyzer");
-  const Json one = found.at("evaluate"), two = found.at("map-evaluate");
-  EXPECT_DOUBLE_EQ(one.at("chamfer_distance").get<double>(), (3.25 / 2 + 8.25 / 3) / 2);
-  EXPECT_DOUBLE_EQ(two.at("chamfer_m").get<double>(), 3.25 / 2 + 8.25 / 3);
-  EXPECT_EQ(one.at("hausdorff_distance"), 5.0);
-  EXPECT_EQ(one.at("f1_scores")[2].at("f1"), 0.0);
-  EXPECT_DOUBLE_EQ(one.at("f1_scores")[3].at("f1").get<double>(), 0.4);
-  EXPECT_DOUBLE_EQ(one.at("auc").get<double>(), (0.1 * 0.2 + 0.7 * 0.4) / 0.95);
-  const Json back = one.at("distance_stats").at("target_to_source");
-  EXPECT_DOUBLE_EQ(back.at("median").get<double>(), 3.0);
-  EXPECT_DOUBLE_EQ(back.at("std").get<double>(), std::sqrt((0.0625 + 9 + 25) / 3 - 2.75 * 2.75));
-  EXPECT_EQ(two.at("accuracy@0.200m"), 0.0);
-  EXPECT_EQ(two.at("fscore@0.200m"), 0.0);
-  EXPECT_EQ(two.at("n_awd_voxels"), 0);
-  EXPECT_FALSE(two.contains("awd_m"));
-}
-
 TEST(Evaluation, BrokenMapsAreInputErrors) {
   EXPECT_THAT(refusal_of<InputError>([] { evaluate({}, kEstimate, EvaluationOptions{}); }),
               HasSubstr("the reference has no points"));
@@ -480,69 +249,6 @@ TEST(Evaluation, VoxelsTooSmallForTheMapAreRefused) {
   EvaluationOptions thinned;
   thinned.voxel_m = 1e-10;
   EXPECT_THAT(refusal_of<UsageError>([&] { evaluate(kReference, kEstimate, thinned); }), HasSubstr("voxel"));
-}
-
-TEST(Evaluation, IsBitwiseTheSameForAnyNumberOfThreads) {
-  // More than one chunk of every parallel loop.
-  const PointCloud reference = painted_sheet(kLoopChunk + 5000, 1), estimate = painted_sheet(kLoopChunk + 1000, 2);
-  std::vector<std::string> found;
-  for (int threads : {1, 2, 3, 8}) {
-    const ExecutionScope limit({.threads = threads});
-    found.push_back(everything(evaluate(reference, estimate, all_options())).dump());
-  }
-  for (const std::string& other : found) EXPECT_EQ(other, found.front());
-}
-
-PointCloud reversed(const PointCloud& map) {
-  PointCloud result = map;
-  std::ranges::reverse(result.positions);
-  std::ranges::reverse(std::get<Array<Rgb8>>(result.colors));
-  return result;
-}
-
-/// The same structure, and numbers that differ by their summation at most.
-void expect_equal_numbers(const Json& a, const Json& b, const std::string& place) {
-  ASSERT_EQ(a.type(), b.type()) << place;
-  if (a.is_number_float()) {
-    EXPECT_NEAR(a.get<double>(), b.get<double>(), 1e-11 * std::abs(a.get<double>())) << place;
-  } else if (a.is_structured()) {
-    ASSERT_EQ(a.size(), b.size()) << place;
-    for (auto x = a.items().begin(), y = b.items().begin(); x != a.items().end(); ++x, ++y) {
-      expect_equal_numbers(x.value(), y.value(), place + "/" + x.key());
-    }
-  } else {
-    EXPECT_EQ(a, b) << place;
-  }
-}
-
-TEST(Evaluation, TheOrderOfThePointsDoesNotMatter) {
-  const PointCloud reference = painted_sheet(5000, 1), estimate = painted_sheet(4000, 2);
-  expect_equal_numbers(everything(evaluate(reference, estimate, all_options())),
-                       everything(evaluate(reversed(reference), reversed(estimate), all_options())), "");
-}
-
-TEST(Evaluation, FlannFindsTheSame) {
-  const PointCloud reference = painted_sheet(5000, 1), estimate = painted_sheet(4000, 2);
-  EvaluationOptions flann = all_options();
-  flann.index = IndexKind::kFlann;
-  expect_equal_numbers(everything(evaluate(reference, estimate, all_options())),
-                       everything(evaluate(reference, estimate, flann)), "");
-}
-
-TEST(Evaluation, NoRecordHoldsANumberThatIsNotFinite) {
-  // JSON has no NaN: nlohmann writes null for it, and a reader of the library would see it.
-  const std::function<void(const Json&, const std::string&)> check = [&](const Json& value, const std::string& place) {
-    if (value.is_number_float()) {
-      EXPECT_TRUE(std::isfinite(value.get<double>())) << place;
-    } else if (value.is_structured()) {
-      for (const auto& [key, item] : value.items()) check(item, place + "/" + key);
-    }
-  };
-  PointCloud far = kEstimate;
-  far.origin = {100, 0, 0};
-  for (const PointCloud& estimate : {kEstimate, kReference, far, gray_map({{0, 0, 0}})}) {
-    check(everything(evaluate(kReference, estimate, all_options())), "");
-  }
 }
 
 }  // namespace

@@ -1,12 +1,5 @@
 #include "cmap/io/capture.hpp"
 
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <map>
-
-#include "cmap/io/lidar_scan_file.hpp"
 #include "io/capture_testing.hpp"
 
 namespace cmap::testing {
@@ -14,41 +7,6 @@ namespace {
 
 using ::testing::HasSubstr;
 namespace fs = std::filesystem;
-
-constexpr const char* kCaptureJson = R"({
- "version": 1,
- "camera": {"model": "pinhole", "width": 30, "height": 20, "K": [25.5, 26, 14.5, 9.5], "distortion": [0.1, 0, 0, 0]},
- "T_imu_lidar": [[0,-1,0,0.5],[1,0,0,0],[0,0,1,-0.25],[0,0,0,1]],
- "T_lidar_camera": [[0,0,1,0],[-1,0,0,0],[0,-1,0,0],[0,0,0,1]],
- "T_world_imu_start": [[0,-1,0,5],[1,0,0,6],[0,0,1,7],[0,0,0,1]],
- "imu": {"acceleration_unit": "g"},
- "time_offset": {"image_s": 0.5, "imu_s": -0.25}
-})";
-
-/// A small capture, to be broken one file at a time.
-struct CaptureText {
-  std::map<std::string, std::string> files{
-      {"capture.json", kCaptureJson},
-      {"images.csv", "timestamp_s,file\n1,images/a.jpg\n2.5,images/b.jpg\n"},
-      {"images/a.jpg", "not looked at"},
-      {"images/b.jpg", "not looked at"},
-      {"lidar.csv", "timestamp_s,file\n1.5,lidar/a.pcd\n"},
-      {"lidar/a.pcd", "not looked at"},
-      {"imu.csv", "timestamp_s,gx,gy,gz,ax,ay,az\n1,0.1,0.2,0.3,0,0,1\n1.5,0,0,0,0.5,0,-1\n"},
-      {"lio.tum", "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n"}};
-
-  Capture open() const {
-    const TempFolder folder;
-    write_to(folder.path());
-    return open_capture(folder.path());
-  }
-  void write_to(const fs::path& folder) const {
-    for (const auto& [name, content] : files) {
-      fs::create_directories((folder / name).parent_path());
-      std::ofstream(folder / name, std::ios::binary) << content;
-    }
-  }
-};
 
 TEST(Capture, OpensAHandMadeOne) {
   const TempFolder folder;
@@ -207,64 +165,6 @@ TEST(Capture, BrokenCalibrationsAreRefusedByKey) {
   }
 }
 
-CaptureCalibration calibration() { return CaptureText().open().calibration; }
-
-LidarScan scan_at(double time_s) {
-  LidarScan scan;
-  scan.timestamp_s = time_s;
-  scan.positions = {{1, 2, 3}, {0.1F, -5, 1e-3F}};
-  scan.intensity = {7, 0.25F};
-  scan.time_s = {0, 0.0625F};
-  scan.ring = {0, 65535};
-  return scan;
-}
-
-void write_small_capture(const fs::path& folder) {
-  CaptureWriter writer(folder, calibration());
-  for (const double time_s : {1.125, 1317042504.967931}) {
-    std::ofstream(writer.add_image(time_s, ".png")) << "not looked at";
-    writer.add_scan(scan_at(time_s));
-  }
-  writer.write_imu(std::vector<ImuSample>{{0.1, {0.1, 1.0 / 3, -2}, {9.81, 1e-9, 0}}});
-  writer.write_lio({{1.5, {1, 2, 3}, Eigen::Quaterniond::Identity()}});
-  writer.add_session(SessionText().read());
-  writer.add_session(SessionText().read());
-  std::ofstream(writer.subfolder("truth") / "scales.json") << "{}";
-  writer.commit();
-}
-
-TEST(CaptureWriter, WrittenAndReadBackIsIdentical) {
-  const TempFolder folder;
-  write_small_capture(folder / "new");
-  EXPECT_FALSE(fs::exists(folder / "new.partial"));
-  const Capture capture = open_capture(folder / "new");
-  EXPECT_TRUE(capture.warnings.empty());
-  EXPECT_EQ(capture.calibration.camera.distortion, calibration().camera.distortion);
-  EXPECT_EQ(capture.calibration.T_imu_lidar.matrix(), calibration().T_imu_lidar.matrix());
-  EXPECT_EQ(capture.calibration.T_lidar_camera.matrix(), calibration().T_lidar_camera.matrix());
-  EXPECT_EQ(capture.calibration.image_time_offset_s, 0.5);
-  ASSERT_EQ(capture.images.size(), 2U);
-  EXPECT_EQ(capture.images[0].time_s, 1.125);
-  EXPECT_EQ(capture.images[1].time_s, 1317042504.967931);
-  EXPECT_THAT(read_bytes(folder / "new/images.csv"), HasSubstr("0.625,images/000000.png")) << "as recorded";
-  ASSERT_EQ(capture.scans.size(), 2U);
-  const LidarScan scan = read_lidar_scan(capture.scans[1].path, capture.scans[1].time_s);
-  EXPECT_EQ(scan.timestamp_s, 1317042504.967931);
-  EXPECT_EQ(scan.positions, scan_at(0).positions);
-  EXPECT_EQ(scan.intensity, scan_at(0).intensity);
-  EXPECT_EQ(scan.time_s, scan_at(0).time_s);
-  EXPECT_EQ(scan.ring, scan_at(0).ring);
-  ASSERT_EQ(capture.imu.size(), 1U);
-  EXPECT_DOUBLE_EQ(capture.imu[0].time_s, 0.1);  // less and plus the offset
-  EXPECT_EQ(capture.imu[0].angular_rate_radps, Eigen::Vector3d(0.1, 1.0 / 3, -2));
-  EXPECT_EQ(capture.imu[0].specific_force_mps2, Eigen::Vector3d(9.81, 1e-9, 0));
-  ASSERT_EQ(capture.lio.size(), 1U);
-  EXPECT_EQ(capture.lio[0].position, Eigen::Vector3d(1, 2, 3));
-  ASSERT_EQ(capture.sessions.size(), 2U);
-  EXPECT_EQ(read_session_predictions(capture.sessions[1]).depth, SessionText().read().depth);
-  EXPECT_TRUE(fs::exists(folder / "new/truth/scales.json"));
-}
-
 /// image_s is 0.5: recorded 10.5 and 10.75 s are 11 and 11.25 s of the LiDAR's clock, in either form of a session.
 TEST(Capture, TheOffsetOfImagesIsThatOfFrames) {
   const TempFolder folder;
@@ -283,19 +183,6 @@ TEST(Capture, TheOffsetOfImagesIsThatOfFrames) {
   EXPECT_EQ(read_session_predictions(capture.sessions[0]).frames[0].time_s, 10.5) << "as recorded";
 }
 
-TEST(CaptureWriter, FramesAreRecordedWithoutTheOffset) {
-  const TempFolder folder;
-  {
-    CaptureWriter writer(folder / "new", calibration());
-    writer.add_session(SessionText().read());
-    std::ofstream(writer.add_image(1, ".png")) << "not looked at";
-    writer.add_scan(scan_at(1));
-    writer.commit();
-  }
-  EXPECT_THAT(read_bytes(folder / "new/predictions/session_0000/frames.csv"), HasSubstr("\n0,10,a.jpg,30,20\n"));
-  EXPECT_EQ(read_session(open_capture(folder / "new"), 0).frames[0].time_s, 10.5);
-}
-
 /// Which NPZ file a frames.csv beside several belongs to, nobody can tell.
 TEST(Capture, OneTableOfFramesForSeveralNpz) {
   CaptureText text;
@@ -311,152 +198,6 @@ TEST(Capture, OneTableOfFramesForSeveralNpz) {
   text.files.erase("predictions/b.frames.csv");
   text.files["predictions/c/depth.npy"] = "x";
   EXPECT_EQ(refused(), "") << "one NPZ file, and a folder, which has a table of its own";
-}
-
-TEST(Capture, PartsThatNobodyWantsMayBeMissingOrBroken) {
-  CaptureText text;
-  text.files.erase("images.csv");
-  text.files["lidar.csv"] = "no table";
-  text.files["imu.csv"] = "no table";
-  text.files["predictions"] = "no folder";
-  const TempFolder folder;
-  text.write_to(folder.path());
-  const Capture capture = open_capture(folder.path(), {Want::kNo, Want::kNo, Want::kNo, Want::kNo});
-  EXPECT_TRUE(capture.images.empty() && capture.scans.empty() && capture.imu.empty());
-  EXPECT_EQ(capture.lio.size(), 2U);
-  EXPECT_TRUE(capture.warnings.empty());
-}
-
-TEST(Capture, PartsThatAreWantedIfUsable) {
-  const CaptureParts parts{.images = Want::kIfUsable, .scans = Want::kIfUsable};
-  const auto opened = [&](const CaptureText& text) {
-    const TempFolder folder;
-    text.write_to(folder.path());
-    return open_capture(folder.path(), parts);
-  };
-  CaptureText text;
-  EXPECT_EQ(opened(text).scans.size(), 1U);
-  text.files.erase("lidar/a.pcd");
-  text.files.erase("images.csv");
-  const Capture capture = opened(text);
-  EXPECT_TRUE(capture.images.empty() && capture.scans.empty());
-  ASSERT_EQ(capture.warnings.size(), 1U);
-  EXPECT_EQ(capture.warnings[0].id, "part_left_out");
-  EXPECT_THAT(capture.warnings[0].message, HasSubstr("lidar/a.pcd is no file; the run goes on without"));
-}
-
-/// With a list of faults, those of such parts are warnings, and what could be read stays.
-TEST(Capture, FaultsOfPartsThatAreNotNeededAreWarnings) {
-  CaptureText text;
-  text.files["images.csv"] += "7,images/missing.jpg\n8,images/gone.jpg\n";
-  text.files["imu.csv"] += "nan,0,0,0,0,0,0\n";
-  const TempFolder folder;
-  text.write_to(folder.path());
-  std::vector<std::string> list;
-  const CaptureParts parts{.images = Want::kIfUsable, .imu = Want::kIfUsable};
-  const Capture capture = open_capture(folder.path(), parts, Faults(list));
-  EXPECT_TRUE(list.empty()) << ::testing::PrintToString(list);
-  EXPECT_EQ(capture.images.size(), 2U);
-  ASSERT_EQ(capture.warnings.size(), 3U);
-  EXPECT_THAT(capture.warnings[0].message, HasSubstr("images/missing.jpg is no file; the run goes on without"));
-  EXPECT_THAT(capture.warnings[2].message, HasSubstr("imu.csv"));
-}
-
-/// All that is wrong at once, and the rest is read.
-TEST(Capture, EveryFaultIsListed) {
-  CaptureText text;
-  std::string& json = text.files["capture.json"];
-  json.replace(json.find("\"version\": 1"), 12, "\"version\": 3, \"moon\": 1");
-  json.replace(json.find("[25.5, 26,"), 10, "[-25.5, 26,");
-  json.replace(json.find("[0,-1,0,0.5]"), 12, "[0,1,0,0.5]");
-  text.files["images.csv"] = "timestamp_s,file\n1,images/a.jpg\n1,images/b.jpg\n3,images/c.jpg\nx,images/a.jpg\n";
-  text.files["lidar.csv"] = "time,file\n";
-  text.files["imu.csv"] += "1,0,0,0,0,0,1\n";
-  text.files["lio.tum"] = "moon\n";
-  text.files["predictions/a.npz"] = text.files["predictions/b.npz"] = text.files["predictions/frames.csv"] = "x";
-  const TempFolder folder;
-  text.write_to(folder.path());
-  std::vector<std::string> faults;
-  const Capture capture = open_capture(folder.path(), {}, Faults(faults));
-  const char* const kExpected[] = {"capture.json: unknown key \"moon\"", "capture.json: version is 3",
-                                   "capture.json: camera: fx is -25.5",  "capture.json: T_imu_lidar: no rotation",
-                                   "images.csv: line 3: time 1 s",       "images.csv: line 4: ",
-                                   "images.csv: line 5: timestamp_s",    "lidar.csv: line 1: the columns",
-                                   "imu.csv: line 4: time 1 s",          "lio.tum: ",
-                                   "predictions/frames.csv: of which"};
-  ASSERT_EQ(faults.size(), std::size(kExpected)) << fmt::format("{}", fmt::join(faults, "\n"));
-  for (std::size_t i = 0; i < faults.size(); ++i) EXPECT_THAT(faults[i], HasSubstr(kExpected[i]));
-  EXPECT_EQ(capture.images.size(), 1U);
-  EXPECT_EQ(capture.calibration.image_time_offset_s, 0.5);
-  EXPECT_EQ(capture.sessions.size(), 2U);
-}
-
-TEST(Capture, ALongListOfFaultyRowsIsCut) {
-  CaptureText text;
-  for (int i = 0; i < 50; ++i) text.files["lidar.csv"] += fmt::format("{},lidar/missing.pcd\n", i + 2);
-  const TempFolder folder;
-  text.write_to(folder.path());
-  std::vector<std::string> faults;
-  open_capture(folder.path(), {}, Faults(faults));
-  ASSERT_EQ(faults.size(), 11U);
-  EXPECT_THAT(faults.back(), HasSubstr("lidar.csv: line 12: 10 rows are faulty so far; the rest was not read"));
-}
-
-TEST(Capture, ACameraOfAnotherSizeIsDoubted) {
-  CaptureText text;
-  std::string& json = text.files["capture.json"];
-  json.replace(json.find("14.5, 9.5"), 9, "320, 240");
-  const Capture capture = text.open();
-  ASSERT_EQ(capture.warnings.size(), 1U);
-  EXPECT_EQ(capture.warnings[0].id, "camera_of_another_size");
-  EXPECT_THAT(capture.warnings[0].message,
-              HasSubstr("capture.json: camera.K: cx, cy = 320, 240 are not near the middle of a picture of 30 x 20"));
-}
-
-TEST(CaptureWriter, WithoutCommitNothingIsLeft) {
-  const TempFolder folder;
-  {
-    CaptureWriter writer(folder / "new", calibration());
-    writer.add_scan(scan_at(1));
-    EXPECT_TRUE(fs::exists(folder / "new.partial/lidar/000000.pcd"));
-  }
-  EXPECT_TRUE(fs::is_empty(folder.path()));
-}
-
-/// Killed at any moment, a writer leaves nothing that reads as a capture.
-TEST(CaptureWriter, KilledItLeavesNoCapture) {
-  const TempFolder folder;
-  const pid_t child = ::fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
-    CaptureWriter writer(folder / "new", calibration());
-    writer.add_scan(scan_at(1));
-    std::ofstream(writer.add_image(1, ".png")) << "not looked at";
-    ::kill(::getpid(), SIGKILL);
-  }
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  ASSERT_TRUE(WIFSIGNALED(status));
-  EXPECT_FALSE(fs::exists(folder / "new"));
-  EXPECT_THAT(input_error([&] { open_capture(folder / "new.partial"); }), HasSubstr("capture.json: no such file"));
-  write_small_capture(folder / "new");
-  EXPECT_EQ(open_capture(folder / "new").scans.size(), 2U) << "what was left is replaced";
-  EXPECT_FALSE(fs::exists(folder / "new.partial"));
-}
-
-TEST(CaptureWriter, RefusesWhatWouldNotReadBack) {
-  const TempFolder folder;
-  fs::create_directory(folder / "there");
-  EXPECT_THROW(CaptureWriter(folder / "there", calibration()), OutputError);
-  EXPECT_THROW(CaptureWriter(folder / "no/such/place", calibration()), OutputError);
-  EXPECT_THROW(CaptureWriter(folder / "new", CaptureCalibration{}), UsageError) << "no camera";
-  CaptureWriter writer(folder / "new", calibration());
-  writer.add_scan(scan_at(2));
-  EXPECT_THROW(writer.add_scan(scan_at(2)), std::invalid_argument);
-  writer.add_image(1, ".png");
-  EXPECT_THROW(writer.add_image(0.5, ".png"), std::invalid_argument);
-  EXPECT_THROW(writer.commit(), UsageError) << "the image was never written";
-  EXPECT_FALSE(fs::exists(folder / "new"));
 }
 
 }  // namespace

@@ -4,11 +4,14 @@
 #include <zlib.h>
 
 #include <cmath>
+#include <fstream>
 #include <functional>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "cmap/io/capture.hpp"
 #include "cmap/io/session_file.hpp"
 #include "io/io_testing.hpp"
 
@@ -156,6 +159,41 @@ struct SessionText {
       if (name.ends_with(".npy")) zip.members.emplace_back(name, content);
     }
     return zip;
+  }
+};
+
+inline constexpr const char* kCaptureJson = R"({
+ "version": 1,
+ "camera": {"model": "pinhole", "width": 30, "height": 20, "K": [25.5, 26, 14.5, 9.5], "distortion": [0.1, 0, 0, 0]},
+ "T_imu_lidar": [[0,-1,0,0.5],[1,0,0,0],[0,0,1,-0.25],[0,0,0,1]],
+ "T_lidar_camera": [[0,0,1,0],[-1,0,0,0],[0,-1,0,0],[0,0,0,1]],
+ "T_world_imu_start": [[0,-1,0,5],[1,0,0,6],[0,0,1,7],[0,0,0,1]],
+ "imu": {"acceleration_unit": "g"},
+ "time_offset": {"image_s": 0.5, "imu_s": -0.25}
+})";
+
+/// A small capture, to be broken one file at a time.
+struct CaptureText {
+  std::map<std::string, std::string> files{
+      {"capture.json", kCaptureJson},
+      {"images.csv", "timestamp_s,file\n1,images/a.jpg\n2.5,images/b.jpg\n"},
+      {"images/a.jpg", "not looked at"},
+      {"images/b.jpg", "not looked at"},
+      {"lidar.csv", "timestamp_s,file\n1.5,lidar/a.pcd\n"},
+      {"lidar/a.pcd", "not looked at"},
+      {"imu.csv", "timestamp_s,gx,gy,gz,ax,ay,az\n1,0.1,0.2,0.3,0,0,1\n1.5,0,0,0,0.5,0,-1\n"},
+      {"lio.tum", "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n"}};
+
+  Capture open() const {
+    const TempFolder folder;
+    write_to(folder.path());
+    return open_capture(folder.path());
+  }
+  void write_to(const std::filesystem::path& folder) const {
+    for (const auto& [name, content] : files) {
+      std::filesystem::create_directories((folder / name).parent_path());
+      std::ofstream(folder / name, std::ios::binary) << content;
+    }
   }
 };
 
