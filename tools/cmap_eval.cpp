@@ -32,7 +32,8 @@ using cmap::ExitCode;
 
 constexpr const char* kDescription =
     "Evaluates an estimated point-cloud map against a reference: color, geometry and distribution metrics. Of one map\n"
-    "alone, what needs no reference: color consistency, mean map entropy, point spacing. Reads\n";
+    "alone, what needs no reference: color consistency, mean map entropy, point spacing.\n"
+    "Reads ";
 
 constexpr const char* kExample =
     "Examples:\n"
