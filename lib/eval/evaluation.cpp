@@ -6,6 +6,7 @@
 #include "cmap/core/error.hpp"
 #include "cmap/core/execution.hpp"
 #include "cmap/metrics/catalog.hpp"
+#include "cmap/metrics/levels.hpp"
 #include "cmap/peers/peer_tool.hpp"
 #include "measurement.hpp"
 #include "plausibility.hpp"
@@ -132,7 +133,13 @@ EvaluatedPair evaluate(PointCloud reference, PointCloud estimate, const Evaluati
     if (result.overlap == 0.0) {
       warnings.push_back({"no_overlap", "no estimated point is within the overlap distance of the reference"});
     }
-    result.metrics = with_missing(selection, finished_records(metrics, sums, inputs, warnings));
+    std::vector<MetricRecord> records = finished_records(metrics, sums, inputs, warnings);
+    warn_of_phases(records, warnings);
+    if (!options.no_levels) {
+      LevelInputs levels(inputs);
+      add_levels(metrics, records, levels, warnings);
+    }
+    result.metrics = with_missing(selection, std::move(records));
   });
   clock.run("intervals", 0.93, [&] { add_fairness(result, inputs, metrics, sensor_positions, warnings); });
   clock.run("other tools", 0.95, [&] { result.peers = peer_records(inputs, options, warnings); });

@@ -29,6 +29,9 @@ OptionFields metric_fields(EvaluationOptions& o) {
             "a voxel of one point counts as 0, is left out, or ends the program"),
       field("ccs-min-points", o.ccs_min_points, kAtLeastTwo, "N",
             "points that such a voxel needs where others are left out"),
+      beside(field("ccs-phases", o.ccs_phases, "color consistency on shifted grids of voxels, too")),
+      field("cw-voxel", o.cw_voxel_m, kPositive, "METERS", "voxel of color Wasserstein"),
+      field("cw-min-points", o.cw_min_points, kAtLeastTwo, "N", "points of each map that such a voxel needs"),
       field("awd-voxel", o.awd_voxel_m, kPositive, "METERS", "voxel of the average Wasserstein distance"),
       field("awd-min-points", o.awd_min_points, kAtLeastTwo, "N", "points of each map that such a voxel needs"),
       field("scs-radius", o.scs_radius_voxels, {1, 1000}, "VOXELS", "neighborhood of spatial consistency"),
@@ -36,6 +39,9 @@ OptionFields metric_fields(EvaluationOptions& o) {
       field("mme-min-neighbors", o.mme_min_neighbors, kAtLeastTwo, "N", "neighbors that a point needs"),
       field("color-max-distance", o.color_max_distance_m, kPositive, "METERS",
             "leave farther pairs out of color distance"),
+      beside(field("grid-phases", o.grid_phases, grid_phases_names(), nullptr,
+                   "grids, shifted by parts of a voxel, on which AWD, SCS and CW are evaluated")),
+      beside(field("no-levels", o.no_levels, "leave out what each value is worth: floor, chance, skill")),
   };
 }
 

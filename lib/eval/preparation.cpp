@@ -73,6 +73,9 @@ void check_voxels_of_metrics(const EvaluationOptions& options, const MetricSelec
   if (selection.contains("color_consistency") && map.cloud.has_color()) {
     check_voxels("ccs-voxel", options.ccs_voxel_m, defaults.ccs_voxel_m, map);
   }
+  if (selection.contains("color_wasserstein") && map.cloud.has_color()) {
+    check_voxels("cw-voxel", options.cw_voxel_m, defaults.cw_voxel_m, map);
+  }
   if (options.bootstrap > 0) check_voxels("block", options.block_m, 0.0, map);
   if (selection.needs_gaussians) check_voxels("awd-voxel", options.awd_voxel_m, defaults.awd_voxel_m, map);
 }

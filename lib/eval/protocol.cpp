@@ -54,6 +54,9 @@ EvaluationOptions plain(EvaluationOptions options) {
   options.bootstrap = 0;
   options.observed = Observed::kNone;
   options.as.clear();
+  options.no_levels = true;
+  options.grid_phases = GridPhases::kOne;
+  options.ccs_phases = false;
   return options;
 }
 

@@ -21,4 +21,10 @@ const EnumNames<Singletons>& singletons_names() {
   return names;
 }
 
+const EnumNames<GridPhases>& grid_phases_names() {
+  static const EnumNames<GridPhases> names{
+      {GridPhases::kOne, "1"}, {GridPhases::kEight, "8"}, {GridPhases::kTwentySeven, "27"}};
+  return names;
+}
+
 }  // namespace cmap

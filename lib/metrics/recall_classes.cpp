@@ -13,14 +13,6 @@ namespace {
 constexpr int kCurvePoints = 15;
 double curve_tau(int i) { return 0.02 * (i + 1); }
 
-/// Largest squared color distance (1/255 units) that counts as right, rounded down.
-float color_limit(double tau) {
-  constexpr double kRounding = 1e-12;  // 3 x 0.2 is not 0.6 in double
-  const double limit = 255.0 * (3.0 * tau + kRounding);
-  const auto nearest = static_cast<float>(limit * limit);
-  return static_cast<double>(nearest) <= limit * limit ? nearest : std::nextafter(nearest, 0.0f);
-}
-
 float next_above(float v) { return std::nextafter(v, std::numeric_limits<float>::infinity()); }
 
 RecallClass class_of(float sq_color, float right) {
@@ -70,7 +62,7 @@ RecallCurve recall_curve(const Array<float>& best, std::uint64_t n) {
   RecallCurve curve;
   for (int i = 0; i < kCurvePoints; ++i) {
     std::uint64_t n_recalled = 0;
-    const float right = color_limit(curve_tau(i));
+    const float right = right_color_limit(curve_tau(i));
     for (float sq_color : best) n_recalled += class_of(sq_color, right) == RecallClass::kRecalled ? 1 : 0;
     curve.tau.push_back(curve_tau(i));
     curve.value.push_back(static_cast<double>(n_recalled) / static_cast<double>(n));
@@ -84,11 +76,18 @@ RecallCurve recall_curve(const Array<float>& best, std::uint64_t n) {
 
 }  // namespace
 
+float right_color_limit(double tau) {
+  constexpr double kRounding = 1e-12;  // 3 x 0.2 is not 0.6 in double
+  const double limit = 255.0 * (3.0 * tau + kRounding);
+  const auto nearest = static_cast<float>(limit * limit);
+  return static_cast<double>(nearest) <= limit * limit ? nearest : std::nextafter(nearest, 0.0f);
+}
+
 LocalColorRecall find_recall(const MapPair& pair, const LocalColorRecallOptions& options) {
   if (!pair.has_color()) throw std::invalid_argument("local color recall: both maps need colors");
-  const float right = color_limit(options.tau);
-  const float stop_at = options.curve ? std::min(right, color_limit(curve_tau(0))) : right;
-  const float limit = options.curve ? std::max(right, color_limit(curve_tau(kCurvePoints - 1))) : right;
+  const float right = right_color_limit(options.tau);
+  const float stop_at = options.curve ? std::min(right, right_color_limit(curve_tau(0))) : right;
+  const float limit = options.curve ? std::max(right, right_color_limit(curve_tau(kCurvePoints - 1))) : right;
   const Array<float> best = best_colors(pair, {options.radius_m, stop_at, next_above(limit), options.radius_steps});
 
   LocalColorRecall recall;

@@ -26,7 +26,7 @@ VoxelFrame color_frame(const IndexedMap& map, double voxel_m) {
 /// What the voxels of a part of the map add up to.
 struct PartOfMap {
   std::uint64_t n_occupied = 0, n_enough = 0, n_singletons = 0, n_one_place = 0;
-  ExactSum trace, trace_of_enough;
+  ExactSum trace, trace_of_enough, sq_trace_of_enough;
   std::vector<double> traces;  ///< of voxels of at least 2 points
 
   void add(const ColorMoments& voxel, std::uint64_t min_points) {
@@ -40,6 +40,7 @@ struct PartOfMap {
     if (voxel.n() < min_points) return;
     ++n_enough;
     trace_of_enough.add(traces.back());
+    sq_trace_of_enough.add(traces.back() * traces.back());
   }
 };
 
@@ -51,7 +52,7 @@ std::vector<VoxelColors> voxel_colors(const IndexedMap& map, double voxel_m) {
     if (sums.n() == 0) return std::nullopt;
     return VoxelColors{frame.index(key), sums.n(), sums.one_place(), sums.covariance_trace()};
   };
-  return collect_voxels<ColorMoments>(map.index.points, frame, color_adder(map), finish);
+  return collect_voxels<ColorMoments>(map.index, frame, color_adder(map), finish);
 }
 
 ColorConsistency color_consistency(const IndexedMap& map, double voxel_m, std::uint64_t min_points) {
@@ -59,13 +60,14 @@ ColorConsistency color_consistency(const IndexedMap& map, double voxel_m, std::u
   ColorConsistency all;
   std::vector<double> traces;
   for (const PartOfMap& part :
-       fold_voxels<PartOfMap, ColorMoments>(map.index.points, color_frame(map, voxel_m), color_adder(map), use)) {
+       fold_voxels<PartOfMap, ColorMoments>(map.index, color_frame(map, voxel_m), color_adder(map), use)) {
     all.n_occupied.add(static_cast<double>(part.n_occupied));
     all.n_enough.add(static_cast<double>(part.n_enough));
     all.n_singletons.add(static_cast<double>(part.n_singletons));
     all.n_one_place.add(static_cast<double>(part.n_one_place));
     all.trace += part.trace;
     all.trace_of_enough += part.trace_of_enough;
+    all.sq_trace_of_enough += part.sq_trace_of_enough;
     traces.insert(traces.end(), part.traces.begin(), part.traces.end());
   }
   all.median = quantiles(traces, std::array{0.5}).front();

@@ -51,6 +51,10 @@ class VoxelMoments {
     products_[5].add(z * z);
   }
   VoxelMoments& operator+=(const VoxelMoments& other);
+  /// Takes points off that are among them.
+  VoxelMoments& operator-=(const VoxelMoments& other);
+  /// Adds points moved by these steps, after which none may lie before the corner.
+  void add_moved(const VoxelMoments& other, const std::array<std::int64_t, 3>& by);
 
   std::uint64_t n() const { return n_; }
   /// Mean from the corner and scatter, meters; of at least one point.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -15,36 +16,44 @@ namespace cmap {
 
 inline constexpr int kCellBits = 5;  ///< a cell has 32 voxels an axis: a surface's sums fit the second-level cache
 
-/// Consecutive slots of a sorted cloud within one cell of 32 x 32 x 32 voxels.
+/// Consecutive slots of a sorted cloud within one cell of 2^bits voxels an axis.
 struct CellRun {
   VoxelKey cell;
   std::size_t begin;
   std::size_t end;
 };
 
-/// The cloud as runs, ordered by cell and slot. Neighbors on the curve are neighbors in space, so runs are few.
-std::vector<CellRun> cell_runs(const PointBlocks& points, const VoxelFrame& frame);
+/// The cloud as runs, ordered by cell and slot. Neighbors on the curve are neighbors in space, so runs are few; blocks
+/// of points whose box lies in one cell are not looked at.
+std::vector<CellRun> cell_runs(const Bvh& cloud, const VoxelFrame& frame, int cell_bits = kCellBits);
+
+/// Points of the least work that is worth a task.
+inline constexpr std::size_t kTaskPoints = std::size_t{1} << 16;
 
 /// Runs of whole cells for one task each: enough points to be worth one, where there are so many.
 std::vector<std::span<const CellRun>> cell_tasks(std::span<const CellRun> runs);
 
-/// Sums of the voxels of one cell, in order of first use; every voxel has its place in a table that fits the
+/// A place within a cell, counted from its corner.
+using LocalKey = std::array<std::int32_t, 3>;
+
+/// Sums of the places of one cell, in order of first use; every place has its entry in a table that fits the
 /// second-level cache.
 template <class Sums>
-class CellVoxels {
+class LocalGrid {
  public:
   struct Entry {
-    VoxelKey key;
+    LocalKey key;
     Sums sums;
   };
 
-  CellVoxels() : entry_at_(kVoxels, kFree) {}
+  /// Of `edge` places an axis.
+  explicit LocalGrid(std::int32_t edge)
+      : edge_(edge), entry_at_(static_cast<std::size_t>(edge) * static_cast<std::size_t>(edge * edge), kFree) {}
 
-  /// Of a voxel of the cell at hand.
-  Sums& operator[](const VoxelKey& key) {
-    std::uint16_t& entry = entry_at_[place(key)];
+  Sums& operator[](const LocalKey& key) {
+    std::uint32_t& entry = entry_at_[place(key)];
     if (entry == kFree) {
-      entry = static_cast<std::uint16_t>(entries_.size());
+      entry = static_cast<std::uint32_t>(entries_.size());
       entries_.push_back({key, {}});
     }
     return entries_[entry].sums;
@@ -57,16 +66,14 @@ class CellVoxels {
   }
 
  private:
-  static constexpr std::size_t kVoxels = std::size_t{1} << (3 * kCellBits);
-  static constexpr std::uint16_t kFree = 0xffff;
-  static_assert(kVoxels < kFree);
+  static constexpr std::uint32_t kFree = ~0u;
 
-  static std::size_t place(const VoxelKey& key) {
-    constexpr std::int32_t kMask = (1 << kCellBits) - 1;
-    return static_cast<std::size_t>(((key.x & kMask) << kCellBits | (key.y & kMask)) << kCellBits | (key.z & kMask));
+  std::size_t place(const LocalKey& key) const {
+    return static_cast<std::size_t>((key[0] * edge_ + key[1]) * edge_ + key[2]);
   }
 
-  std::vector<std::uint16_t> entry_at_;
+  std::int32_t edge_;
+  std::vector<std::uint32_t> entry_at_;
   std::vector<Entry> entries_;
 };
 
@@ -74,24 +81,27 @@ class CellVoxels {
 /// is a Result for each task, and they are ordered by cell. Cells are independent and sum in the order of slots, so
 /// that the results are the same for any number of threads.
 template <class Result, class Sums, class AddPoint, class UseVoxel>
-std::vector<Result> fold_voxels(const PointBlocks& points, const VoxelFrame& frame, AddPoint add, UseVoxel use) {
-  const std::vector<CellRun> runs = cell_runs(points, frame);
+std::vector<Result> fold_voxels(const Bvh& cloud, const VoxelFrame& frame, AddPoint add, UseVoxel use) {
+  constexpr std::int32_t kEdge = 1 << kCellBits;
+  const std::vector<CellRun> runs = cell_runs(cloud, frame);
   const std::vector<std::span<const CellRun>> tasks = cell_tasks(runs);
   std::vector<Result> results(tasks.size());
   parallel_chunks(tasks.size(), 1, [&](std::size_t i, std::size_t) {
-    CellVoxels<Sums> voxels;
+    LocalGrid<Sums> voxels(kEdge);
+    VoxelKey cell = tasks[i].front().cell;
     const auto use_cell = [&] {
-      for (const auto& [key, sums] : voxels.entries()) use(results[i], key, sums);
+      for (const auto& [at, sums] : voxels.entries()) {
+        use(results[i], VoxelKey{cell.x * kEdge + at[0], cell.y * kEdge + at[1], cell.z * kEdge + at[2]}, sums);
+      }
       voxels.clear();
     };
-    VoxelKey cell = tasks[i].front().cell;
     for (const CellRun& run : tasks[i]) {
       if (run.cell != cell) use_cell();
       cell = run.cell;
       for (std::size_t slot = run.begin; slot < run.end; ++slot) {
-        const Eigen::Vector3d world = points.world(slot);
+        const Eigen::Vector3d world = cloud.points.world(slot);
         const VoxelKey key = frame.key(world);
-        add(voxels[key], slot, world, key);
+        add(voxels[{key.x & (kEdge - 1), key.y & (kEdge - 1), key.z & (kEdge - 1)}], slot, world, key);
       }
     }
     use_cell();
@@ -101,13 +111,13 @@ std::vector<Result> fold_voxels(const PointBlocks& points, const VoxelFrame& fra
 
 /// The same where every voxel becomes a result, or none, by finish(key, sums).
 template <class Sums, class AddPoint, class Finish>
-auto collect_voxels(const PointBlocks& points, const VoxelFrame& frame, AddPoint add, Finish finish) {
+auto collect_voxels(const Bvh& cloud, const VoxelFrame& frame, AddPoint add, Finish finish) {
   using Result = typename std::invoke_result_t<Finish, const VoxelKey&, const Sums&>::value_type;
   const auto use = [&](std::vector<Result>& results, const VoxelKey& key, const Sums& sums) {
     if (auto result = finish(key, sums)) results.push_back(std::move(*result));
   };
   std::vector<Result> all;
-  for (auto& results : fold_voxels<std::vector<Result>, Sums>(points, frame, add, use)) {
+  for (auto& results : fold_voxels<std::vector<Result>, Sums>(cloud, frame, add, use)) {
     std::ranges::move(results, std::back_inserter(all));
   }
   return all;

@@ -94,7 +94,7 @@ Record mapeval_record(MetricInputs& inputs, const PeerOptions&) {
     Record& level = levels.emplace_back(Record{.threshold_m = o.thresholds_m[t]});
     level.add("AC", accuracy.accuracy_m[t]).add("COM", accuracy.completeness[t]);
   }
-  const std::vector<VoxelDistance> voxels = mapeval_wasserstein_distances(*inputs.gaussians);
+  const std::vector<VoxelDistance> voxels = mapeval_wasserstein_distances(inputs.wasserstein->gaussians);
   const MapEvalEntropy estimate = mapeval_entropy(*inputs.neighborhoods.estimate, o.mme_min_neighbors);
   const MapEvalEntropy reference = mapeval_entropy(*inputs.neighborhoods.reference, kMapEvalReferenceNeighbors);
   Record record;

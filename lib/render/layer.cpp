@@ -109,8 +109,8 @@ Layer consistency_layer(const EvaluatedPair& evaluation, const LayerOptions& opt
 Layer wasserstein_layer(const EvaluatedPair& evaluation, const LayerOptions& options) {
   const double voxel_m = evaluation.options.awd_voxel_m;
   VoxelValues voxels(evaluation.pair.estimate, voxel_m);
-  for (const auto& [index, distance_m] :
-       wasserstein_distances(gaussian_pairs(evaluation.pair, voxel_m, evaluation.options.awd_min_points))) {
+  const PhaseOptions grid{.voxel_m = voxel_m, .min_points = evaluation.options.awd_min_points};
+  for (const auto& [index, distance_m] : voxel_wasserstein(evaluation.pair, grid).by_phase.front()) {
     voxels.set(index, distance_m);
   }
   return voxel_layer(evaluation.pair.estimate, fmt::format("Wasserstein distance in voxels of {} m", voxel_m),

@@ -12,8 +12,7 @@ using test::number;
 Record average_of(const std::vector<VoxelDistance>& voxels) {
   const MapPair pair = test::Clouds{test::cloud_of({{0, 0, 0}}), test::cloud_of({{0, 0, 0}})}.pair();
   MetricInputs inputs(MetricOptions{}, pair);
-  inputs.gaussians.emplace();
-  inputs.wasserstein = voxels;
+  inputs.wasserstein = VoxelWasserstein{{}, {voxels}, {}};
   std::vector<Warning> warnings;
   return measure(catalog::average_wasserstein, inputs, warnings);
 }

@@ -3,6 +3,7 @@
 // A metric's record of two maps, or of distances that a test makes up.
 
 #include "cmap/metrics/catalog.hpp"
+#include "cmap/metrics/levels.hpp"
 #include "cmap/metrics/metric_sums.hpp"
 #include "metrics/map_pairs.hpp"
 
@@ -16,6 +17,17 @@ inline Record measured(const Metric& metric, const MapPair& pair, const MetricOp
 
 inline Record measured(const Metric& metric, const Clouds& clouds, const MetricOptions& options = {}) {
   return measured(metric, clouds.pair(), options);
+}
+
+/// The same with what the value is worth.
+inline Record with_levels(const Metric& metric, const Clouds& clouds, const MetricOptions& options = {}) {
+  const MapPair pair = clouds.pair();
+  MetricInputs inputs(options, pair);
+  std::vector<Warning> warnings;
+  Record record = measure(metric, inputs, warnings);
+  LevelInputs levels(inputs);
+  metric.levels(record, levels, warnings);
+  return record;
 }
 
 /// Of one map alone.

@@ -14,8 +14,7 @@ Record consistency_of(const Voxels& voxels, std::uint64_t radius) {
   MetricOptions options;
   options.scs_radius_voxels = radius;
   MetricInputs inputs(options, pair);
-  inputs.gaussians.emplace();
-  inputs.wasserstein = voxels;
+  inputs.wasserstein = VoxelWasserstein{{}, {voxels}, {}};
   std::vector<Warning> warnings;
   return measure(catalog::spatial_consistency, inputs, warnings);
 }

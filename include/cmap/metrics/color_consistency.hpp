@@ -26,13 +26,17 @@ inline bool is_in_mean(const VoxelColors& voxel, Singletons singletons, std::uin
 /// Sums over the occupied voxels of a map, and the median of the traces of those of at least 2 points.
 struct ColorConsistency {
   ExactSum n_occupied, n_enough, n_singletons, n_one_place;  ///< of at least min_points; of one; of copies of one
-  ExactSum trace, trace_of_enough;
+  ExactSum trace, trace_of_enough, sq_trace_of_enough;
   double median = 0.0;
 };
 
 /// In one pass, without holding all voxels. The map needs colors (std::invalid_argument). Throws UsageError for voxels
 /// too small to be counted. The same for any number of threads.
 ColorConsistency color_consistency(const IndexedMap& map, double voxel_m, std::uint64_t min_points);
+
+/// The value under the options' rule for each phase of the grid ("Levels" of METRICS), x slowest; NaN where no voxel
+/// counts. The map needs colors. The same for any number of threads and any order of the points.
+std::vector<double> color_consistency_phases(const IndexedMap& map, const MetricOptions& options);
 
 /// The occupied voxels, in an order that is always the same; throws as color_consistency does.
 std::vector<VoxelColors> voxel_colors(const IndexedMap& map, double voxel_m);

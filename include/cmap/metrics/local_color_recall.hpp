@@ -48,6 +48,9 @@ struct LocalColorRecall {
   Array<RecallClass> classes;  ///< by reference slot
 };
 
+/// The largest squared distance (units of 1/255) between colors that counts as right: within 3 tau.
+float right_color_limit(double tau);
+
 /// Both maps need colors (std::invalid_argument). The same for any number of threads.
 LocalColorRecall find_recall(const MapPair& pair, const LocalColorRecallOptions& options);
 

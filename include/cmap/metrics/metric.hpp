@@ -76,6 +76,8 @@ struct DistanceQuantile {
 
 enum class Sides : std::uint8_t { kBoth, kEstimate, kReference };
 
+class LevelInputs;
+
 /// What a metric is; functions that it has no use for are null. All are pure but for `prepare`.
 struct Metric {
   MetricInfo info;
@@ -97,6 +99,8 @@ struct Metric {
   std::vector<DistanceQuantile> (*quantiles)(const PairSums&, const MetricInputs&) = nullptr;
   /// Adds what does not follow from sums, and says what a user should know.
   void (*finish)(Record&, const MetricInputs&, std::span<const double> quantiles, std::vector<Warning>&) = nullptr;
+  /// Adds what the value of a pair is worth (levels.hpp): floor, chance, skill.
+  void (*levels)(Record&, LevelInputs&, std::vector<Warning>&) = nullptr;
 };
 
 /// All metrics, in the order of reports.

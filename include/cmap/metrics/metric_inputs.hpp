@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cmap/metrics/color_consistency.hpp"
+#include "cmap/metrics/color_gaussians.hpp"
 #include "cmap/metrics/exposure_gains.hpp"
 #include "cmap/metrics/local_color_recall.hpp"
 #include "cmap/metrics/map_pair.hpp"
@@ -73,9 +74,10 @@ struct MetricInputs {
   std::optional<ExposureGains> gains = {};
   BothSides<Array<double>> delta_e = {};  ///< by slot; NaN where a pair does not count
   BothSides<std::optional<ColorConsistency>> color_consistency = {};
-  std::optional<std::vector<GaussianPair>> gaussians = {};
-  std::vector<VoxelDistance> wasserstein = {};  ///< of `gaussians`
-  std::vector<double> variations = {};          ///< of `wasserstein`: local_variations()
+  std::vector<double> consistency_phases = {};  ///< color consistency of the estimate, x slowest
+  std::optional<ColorWasserstein> color_wasserstein = {};
+  std::optional<VoxelWasserstein> wasserstein = {};
+  std::vector<std::vector<double>> variations = {};  ///< local_variations() of `wasserstein`, by phase
   BothSides<std::optional<NeighborhoodShape>> neighborhoods = {};
 };
 

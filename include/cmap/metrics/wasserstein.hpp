@@ -28,6 +28,31 @@ struct GaussianPair {
   Gaussian estimate;
 };
 
+struct VoxelDistance {
+  VoxelIndex index;
+  double distance_m;
+};
+
+/// The Wasserstein distances of the voxels that hold enough points of both maps, of one grid of voxels and of those
+/// shifted by parts of a voxel ("Levels" of METRICS).
+struct VoxelWasserstein {
+  std::vector<GaussianPair> gaussians;               ///< of the grid at the world's origin, ordered by index
+  std::vector<std::vector<VoxelDistance>> by_phase;  ///< x slowest; the first is of `gaussians`; ordered by index
+  std::vector<double> of_halves;  ///< those between two random halves of the reference, if asked for; in any order
+};
+
+/// How a grid is evaluated.
+struct PhaseOptions {
+  double voxel_m = 1.0;
+  std::uint64_t min_points = 2;  ///< of each map
+  int parts_per_axis = 1;        ///< 1: the grid at the world's origin alone; 2 or 3: 8 or 27 phases
+  bool halves = false;
+};
+
+/// In one pass over the points. Throws UsageError for voxels too small to be counted. The same bits for any number of
+/// threads and any order of the points (but for the halves, which the original index decides).
+VoxelWasserstein voxel_wasserstein(const MapPair& pair, const PhaseOptions& options);
+
 /// The voxels of both maps with at least min_points (and 2) points each, ordered by index. Throws UsageError for voxels
 /// too small to be counted. Deterministic, and the same bits for any order of the points.
 std::vector<GaussianPair> gaussian_pairs(const MapPair& pair, double voxel_m, std::uint64_t min_points);
@@ -36,14 +61,6 @@ std::vector<GaussianPair> gaussian_pairs(const MapPair& pair, double voxel_m, st
 /// W^2 = |m1 - m2|^2 + tr(S1 + S2 - 2 (S1^1/2 S2 S1^1/2)^1/2), covariances with n - 1. A W^2 below
 /// 1e-12 (tr S1 + tr S2) is rounding noise and counts as 0.
 double wasserstein_distance(const Gaussian& a, const Gaussian& b);
-
-struct VoxelDistance {
-  VoxelIndex index;
-  double distance_m;
-};
-
-/// The Wasserstein distance of every pair, in order.
-std::vector<VoxelDistance> wasserstein_distances(std::span<const GaussianPair> pairs);
 
 /// Their mean, NaN of none.
 double mean_distance(std::span<const VoxelDistance> voxels);

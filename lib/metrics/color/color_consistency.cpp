@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "cmap/core/error.hpp"
+#include "cmap/metrics/levels.hpp"
 #include "cmap/metrics/metric.hpp"
 #include "color/color_fields.hpp"
 
@@ -49,6 +52,25 @@ void warn_of_singletons(const MetricOptions& o, const ColorConsistency& found, s
                    n_single, found.n_occupied.value(), o.ccs_voxel_m, counted)});
 }
 
+/// The reference's own value over voxels of enough points.
+Level own_level(const ColorConsistency& reference) {
+  const double n = reference.n_enough.value(), sum = reference.trace_of_enough.value();
+  if (n == 0.0) return {.reason = "no voxel of the reference holds enough points"};
+  const double sq_sum = reference.sq_trace_of_enough.value();
+  const double variance = n < 2.0 ? NAN : std::max(0.0, sq_sum - sum * sum / n) / (n - 1.0);
+  return {sum / n, std::sqrt(variance / n), static_cast<std::uint64_t>(n)};
+}
+
+/// The trace of the covariance of all colors.
+Level chance_level(const std::vector<Eigen::Vector3d>& colors) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& color : colors) mean += color / static_cast<double>(colors.size());
+  std::vector<double> squares;
+  for (const Eigen::Vector3d& color : colors) squares.push_back((color - mean).squaredNorm() / (255.0 * 255.0));
+  const auto n = static_cast<double>(colors.size());
+  return scaled(mean_level(squares), n / (n - 1.0));
+}
+
 std::array<double, kColumns> terms_of(const VoxelColors& voxel, std::uint64_t min_points) {
   const bool single = voxel.n == 1, enough = !single && voxel.n >= min_points;
   return {1.0,         enough ? 1.0 : 0.0,        single ? 1.0 : 0.0, !single && voxel.one_place ? 1.0 : 0.0,
@@ -80,6 +102,7 @@ extern constinit const Metric color_consistency{
             inputs.color_consistency.of(side) =
                 cmap::color_consistency(inputs.map(side), o.ccs_voxel_m, o.ccs_min_points);
           }
+          if (o.ccs_phases) inputs.consistency_phases = color_consistency_phases(inputs.estimate, o);
         },
     .columns =
         [](const MetricSettings&) {
@@ -122,8 +145,14 @@ extern constinit const Metric color_consistency{
           }
           warn_of_singletons(o, found, warnings);
           add_rest(record, found, inputs.estimate);
+          if (o.ccs_phases) add_phases(record, inputs.consistency_phases);
           if (inputs.pair == nullptr) return;
           add_rest(record.part_to_change("reference"), *inputs.color_consistency.reference, inputs.pair->reference);
+        },
+    .levels =
+        [](Record& record, LevelInputs& levels, std::vector<Warning>&) {
+          add_floor(record, own_level(*levels.inputs.color_consistency.reference));
+          add_chance(record, chance_level(levels.estimate_colors()));
         }};
 
 }  // namespace catalog

@@ -1,6 +1,8 @@
 #include "color/color_distance.hpp"
 
+#include "cmap/metrics/levels.hpp"
 #include "color/color_fields.hpp"
+#include "color/color_levels.hpp"
 
 namespace cmap {
 
@@ -66,7 +68,9 @@ extern constinit const Metric color_distance{
           const std::uint64_t of_estimate = unmatched(pair.estimate, "n_estimate");
           record.add("n_unmatched_estimate", of_estimate);
           record.add("n_unmatched_reference", unmatched(pair.reference, "n_reference"));
-        }};
+        },
+    .levels = [](Record& record, LevelInputs& levels,
+                 std::vector<Warning>&) { add_levels_of(record, color_distance_levels(levels), "lower"); }};
 
 }  // namespace catalog
 }  // namespace cmap

@@ -1,6 +1,10 @@
+#include <numbers>
+
 #include "cmap/metrics/catalog.hpp"
+#include "cmap/metrics/levels.hpp"
 #include "color/color_distance.hpp"
 #include "color/color_fields.hpp"
+#include "color/color_levels.hpp"
 
 namespace cmap::catalog {
 
@@ -25,6 +29,18 @@ extern constinit const Metric color_fidelity{
           if (!std::isinf(*record.value)) return;
           warnings.push_back(
               {"color_fidelity_infinite", "every color is exact: color fidelity is infinite, which is null in JSON"});
+        },
+    .levels =
+        [](Record& record, LevelInputs& levels, std::vector<Warning>&) {
+          const auto in_decibels = [](Level level) {
+            level.se *= 20.0 / std::numbers::ln10 / level.value;
+            level.value = -20.0 * std::log10(level.value);
+            return level;
+          };
+          Levels found = color_distance_levels(levels);
+          found.floor = in_decibels(found.floor);
+          found.chance = in_decibels(found.chance);
+          add_levels_of(record, found, "higher");
         }};
 
 }  // namespace cmap::catalog

@@ -2,8 +2,10 @@
 
 #include "cmap/core/parallel.hpp"
 #include "cmap/geometry/color.hpp"
+#include "cmap/metrics/levels.hpp"
 #include "cmap/metrics/metric.hpp"
 #include "color/color_fields.hpp"
+#include "color/color_levels.hpp"
 
 namespace cmap {
 namespace {
@@ -73,6 +75,12 @@ extern constinit const Metric delta_e{
           add_quantiles(record.part_to_change("estimate_to_reference"), inputs.delta_e.estimate);
           add_quantiles(record.part_to_change("reference_to_estimate"), inputs.delta_e.reference);
           add_without_color(record, inputs);
+        },
+    .levels =
+        [](Record& record, LevelInputs& levels, std::vector<Warning>&) {
+          const auto lab = [](const Eigen::Vector3d& color) { return srgb_to_lab(color / 255.0); };
+          add_levels_of(record, difference_levels(levels, levels.inputs.options().lcr_radius_m, lab, delta_e_2000),
+                        "lower");
         }};
 
 }  // namespace catalog

@@ -1,4 +1,5 @@
 #include "cmap/geometry/order_statistics.hpp"
+#include "cmap/metrics/levels.hpp"
 #include "cmap/metrics/metric.hpp"
 #include "distribution/wasserstein_field.hpp"
 
@@ -42,7 +43,7 @@ extern constinit const Metric average_wasserstein{
         },
     .each_voxel =
         [](const MetricInputs& inputs, Side, const std::function<void(const VoxelTerms&)>& use) {
-          for (const VoxelDistance& voxel : inputs.wasserstein) {
+          for (const VoxelDistance& voxel : wasserstein_voxels(inputs)) {
             const double terms[]{1.0, voxel.distance_m};
             use({voxel.index, inputs.options().awd_voxel_m, terms});
           }
@@ -56,7 +57,18 @@ extern constinit const Metric average_wasserstein{
     .finish =
         [](Record& record, const MetricInputs& inputs, std::span<const double>, std::vector<Warning>& warnings) {
           warn_of_no_voxels(inputs, warnings);
-          add_distribution(record, inputs.wasserstein);
+          add_distribution(record, wasserstein_voxels(inputs));
+          std::vector<double> means;
+          for (const auto& voxels : inputs.wasserstein->by_phase) means.push_back(mean_distance(voxels));
+          add_phases(record, means);
+        },
+    .levels =
+        [](Record& record, LevelInputs& levels, std::vector<Warning>&) {
+          const MetricOptions& o = levels.inputs.options();
+          add_floor(record, voxel_level(levels.inputs.wasserstein->of_halves,
+                                        fmt::format("fewer than 20 voxels of {} m hold {} points of both halves of the "
+                                                    "reference",
+                                                    o.awd_voxel_m, o.awd_min_points)));
         }};
 
 }  // namespace catalog

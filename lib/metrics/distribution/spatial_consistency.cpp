@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "cmap/metrics/levels.hpp"
 #include "cmap/metrics/metric.hpp"
 #include "distribution/wasserstein_field.hpp"
 
@@ -17,8 +18,10 @@ extern constinit const Metric spatial_consistency{
     .prepare =
         [](MetricInputs& inputs) {
           prepare_wasserstein(inputs);
-          inputs.variations =
-              local_variations(inputs.wasserstein, static_cast<int>(inputs.options().scs_radius_voxels));
+          const auto radius = static_cast<int>(inputs.options().scs_radius_voxels);
+          for (const auto& voxels : inputs.wasserstein->by_phase) {
+            inputs.variations.push_back(local_variations(voxels, radius));
+          }
         },
     .sides = Sides::kEstimate,
     .columns =
@@ -27,11 +30,11 @@ extern constinit const Metric spatial_consistency{
         },
     .each_voxel =
         [](const MetricInputs& inputs, Side, const std::function<void(const VoxelTerms&)>& use) {
-          const std::vector<double>& variations = inputs.variations;
+          const std::vector<double>& variations = inputs.variations.front();
           for (std::size_t i = 0; i < variations.size(); ++i) {
             if (std::isnan(variations[i])) continue;
             const double terms[]{1.0, variations[i]};
-            use({inputs.wasserstein[i].index, inputs.options().awd_voxel_m, terms});
+            use({wasserstein_voxels(inputs)[i].index, inputs.options().awd_voxel_m, terms});
           }
         },
     .value =
@@ -44,7 +47,10 @@ extern constinit const Metric spatial_consistency{
     .finish =
         [](Record& record, const MetricInputs& inputs, std::span<const double>, std::vector<Warning>& warnings) {
           warn_of_no_voxels(inputs, warnings);
-          if (!std::isnan(*record.value) || inputs.wasserstein.empty()) return;
+          std::vector<double> means;
+          for (const std::vector<double>& variations : inputs.variations) means.push_back(mean_variation(variations));
+          add_phases(record, means);
+          if (!std::isnan(*record.value) || wasserstein_voxels(inputs).empty()) return;
           warnings.push_back({"spatial_consistency_no_voxels",
                               "no voxel has other voxels at a Wasserstein distance above 0 around it: no SCS"});
         }};

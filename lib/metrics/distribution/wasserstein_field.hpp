@@ -10,18 +10,25 @@
 
 namespace cmap {
 
+/// The distances of the voxels that both maps fill, of one phase of the grid; at the world's origin the first.
+inline std::span<const VoxelDistance> wasserstein_voxels(const MetricInputs& inputs, std::size_t phase = 0) {
+  return inputs.wasserstein->by_phase[phase];
+}
+
 /// Makes the Gaussians of the voxels that both maps fill and their distances, unless they are there.
 inline void prepare_wasserstein(MetricInputs& inputs) {
-  if (inputs.gaussians) return;
+  if (inputs.wasserstein) return;
   const MetricOptions& o = inputs.options();
-  inputs.gaussians = gaussian_pairs(*inputs.pair, o.awd_voxel_m, o.awd_min_points);
-  inputs.wasserstein = wasserstein_distances(*inputs.gaussians);
+  inputs.wasserstein = voxel_wasserstein(*inputs.pair, {.voxel_m = o.awd_voxel_m,
+                                                        .min_points = o.awd_min_points,
+                                                        .parts_per_axis = static_cast<int>(o.grid_phases),
+                                                        .halves = !o.no_levels});
 }
 
 /// Said once, whichever of the two metrics is asked for.
 inline void warn_of_no_voxels(const MetricInputs& inputs, std::vector<Warning>& warnings) {
   constexpr const char* kId = "average_wasserstein_no_voxels";
-  if (!inputs.wasserstein.empty() || std::ranges::count(warnings, kId, &Warning::id) > 0) return;
+  if (!wasserstein_voxels(inputs).empty() || std::ranges::count(warnings, kId, &Warning::id) > 0) return;
   warnings.push_back({kId, fmt::format("no {} m voxel holds {} points of both maps: no AWD and no SCS",
                                        inputs.options().awd_voxel_m, inputs.options().awd_min_points)});
 }

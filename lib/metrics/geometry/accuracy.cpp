@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "cmap/metrics/levels.hpp"
 #include "geometry/band_counts.hpp"
 
 namespace cmap::catalog {
@@ -62,6 +63,12 @@ extern constinit const Metric accuracy{
         [](Record& record, const MetricInputs&, std::span<const double> medians, std::vector<Warning>&) {
           std::vector<Record>& levels = record.list_to_change("per_threshold");
           for (std::size_t t = 0; t < levels.size(); ++t) levels[t].add("median", medians[t]);
+        },
+    .levels =
+        [](Record& record, LevelInputs& levels, std::vector<Warning>&) {
+          for (Record& level : record.list_to_change("per_threshold")) {
+            add_floor(level, rms_level(self_distances(levels, level.threshold_m)));
+          }
         }};
 
 }  // namespace cmap::catalog

@@ -4,6 +4,8 @@
 
 #include <numeric>
 
+#include "cmap/metrics/levels.hpp"
+
 namespace cmap {
 
 std::vector<std::string> band_columns(const MetricSettings& settings, const std::string& name) {
@@ -37,6 +39,10 @@ Record shares_record(std::span<const double> counts, const MetricSettings& setti
   Record record;
   record.add("n_points", static_cast<std::uint64_t>(sum_of_bands(counts)));
   return record.add("per_threshold", std::move(levels));
+}
+
+void add_share_floors(Record& record, LevelInputs& levels) {
+  for (Record& level : record.list_to_change("per_threshold")) add_floor(level, self_share(levels, *level.threshold_m));
 }
 
 }  // namespace cmap

@@ -23,4 +23,7 @@ double share_within(std::span<const double> counts, const MetricSettings& settin
 /// {per_threshold: [{threshold_m, value, n}], n_points}: those shares.
 Record shares_record(std::span<const double> counts, const MetricSettings& settings);
 
+/// Adds to each threshold the share of the reference's points that have another one of it within.
+void add_share_floors(Record& record, LevelInputs& levels);
+
 }  // namespace cmap

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "cmap/metrics/geometry.hpp"
+#include "cmap/metrics/levels.hpp"
 #include "cmap/metrics/metric.hpp"
 
 namespace cmap {
@@ -53,7 +54,9 @@ extern constinit const Metric chamfer{
           variants.add("l1_sum", l1_sum).add("l1_mean", 0.5 * l1_sum).add("l2sq_sum", e.mean_sq_m2 + r.mean_sq_m2);
           variants.add("l2_rms_mean", 0.5 * (std::sqrt(e.mean_sq_m2) + std::sqrt(r.mean_sq_m2)));
           return record.add("variants", variants.add("truncated_l1_sum", e.mean_truncated_m + r.mean_truncated_m));
-        }};
+        },
+    .levels = [](Record& record, LevelInputs& levels,
+                 std::vector<Warning>&) { add_floor(record, scaled(mean_level(self_distances(levels)), 2.0)); }};
 
 }  // namespace catalog
 }  // namespace cmap

@@ -1,4 +1,5 @@
 #include "cmap/metrics/catalog.hpp"
+#include "cmap/metrics/levels.hpp"
 #include "geometry/band_counts.hpp"
 
 namespace cmap::catalog {
@@ -13,8 +14,8 @@ extern constinit const Metric completeness{
              .per_threshold = true,
              .share = true},
     .sums_of = &fitness,
-    .value = [](const PairSums& sums, const MetricSettings& settings) {
-      return shares_record(sums.reference, settings);
-    }};
+    .value = [](const PairSums& sums,
+                const MetricSettings& settings) { return shares_record(sums.reference, settings); },
+    .levels = [](Record& record, LevelInputs& levels, std::vector<Warning>&) { add_share_floors(record, levels); }};
 
 }  // namespace cmap::catalog

@@ -1,3 +1,4 @@
+#include "cmap/metrics/levels.hpp"
 #include "geometry/band_counts.hpp"
 
 namespace cmap::catalog {
@@ -20,6 +21,7 @@ extern constinit const Metric fitness{
           }
         },
     .value = [](const PairSums& sums,
-                const MetricSettings& settings) { return shares_record(sums.estimate, settings); }};
+                const MetricSettings& settings) { return shares_record(sums.estimate, settings); },
+    .levels = [](Record& record, LevelInputs& levels, std::vector<Warning>&) { add_share_floors(record, levels); }};
 
 }  // namespace cmap::catalog

@@ -1,0 +1,129 @@
+#include "cmap/metrics/color_gaussians.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "cmap/core/exact_sum.hpp"
+#include "color_sums.hpp"
+
+namespace cmap {
+namespace {
+
+/// Takes the voxels of one task.
+struct ColorUse {
+  std::uint64_t min_points;
+  double step;
+  std::vector<ColoredVoxel> voxels;
+  std::vector<double> of_halves;
+  std::vector<ExactSum> sums;  ///< by phase
+  std::vector<std::uint64_t> counts;
+
+  void voxel(int phase, const VoxelIndex& index, const PhaseVoxel<ColorSums>& colors) {
+    if (colors.reference.n() < min_points || colors.estimate.n() < min_points) return;
+    const Gaussian reference = colors.reference.gaussian(step);
+    const double distance = wasserstein_distance(reference, colors.estimate.gaussian(step));
+    sums[static_cast<std::size_t>(phase)].add(distance);
+    ++counts[static_cast<std::size_t>(phase)];
+    if (phase == 0) voxels.push_back({index, distance, colors.estimate.n(), reference});
+  }
+  void halves(const ColorSums& one, const ColorSums& other) {
+    if (one.n() < min_points || other.n() < min_points) return;
+    of_halves.push_back(wasserstein_distance(one.gaussian(step), other.gaussian(step)));
+  }
+
+  void take(const ColorUse& other) {
+    std::ranges::copy(other.voxels, std::back_inserter(voxels));
+    std::ranges::copy(other.of_halves, std::back_inserter(of_halves));
+    for (std::size_t phase = 0; phase < sums.size(); ++phase) {
+      sums[phase] += other.sums[phase];
+      counts[phase] += other.counts[phase];
+    }
+  }
+};
+
+}  // namespace
+
+ColorWasserstein color_wasserstein(const MapPair& pair, const PhaseOptions& options) {
+  if (!pair.has_color()) throw std::invalid_argument("color_wasserstein: both maps need colors");
+  const PhasedFrame frame(united(pair.reference.index.bounds(), pair.estimate.index.bounds()), options.voxel_m,
+                          options.parts_per_axis);
+  const auto n_phases = static_cast<std::size_t>(frame.n_phases());
+  const ColorSource source(maps_of(pair), options.halves);
+  const ColorUse none{std::max<std::uint64_t>(options.min_points, 2),
+                      source.step,
+                      {},
+                      {},
+                      std::vector<ExactSum>(n_phases),
+                      std::vector<std::uint64_t>(n_phases)};
+  ColorUse all = none;
+  for (const ColorUse& use : PhaseFold<ColorSource, ColorUse>(maps_of(pair), frame, source).run(none)) all.take(use);
+
+  ColorWasserstein found{std::move(all.voxels), {}, std::move(all.of_halves)};
+  for (std::size_t phase = 0; phase < n_phases; ++phase) {
+    found.phase_means.push_back(all.sums[phase].value() / static_cast<double>(all.counts[phase]));
+  }
+  return found;
+}
+
+namespace {
+
+/// How many points of either map a voxel holds.
+struct VoxelCount {
+  VoxelIndex index;
+  std::uint64_t n_reference, n_estimate;
+};
+
+struct CountUse {
+  std::vector<VoxelCount> voxels;
+  void voxel(int, const VoxelIndex& index, const PhaseVoxel<ColorSums>& sums) {
+    voxels.push_back({index, sums.reference.n(), sums.estimate.n()});
+  }
+  void halves(const ColorSums&, const ColorSums&) {}
+};
+
+/// Whether voxels of enough points of both hold half of the points of both.
+bool reach_half(const std::vector<VoxelCount>& voxels, std::uint64_t min_points) {
+  std::uint64_t n_reference = 0, n_estimate = 0, in_reference = 0, in_estimate = 0;
+  for (const VoxelCount& voxel : voxels) {
+    n_reference += voxel.n_reference;
+    n_estimate += voxel.n_estimate;
+    if (voxel.n_reference < min_points || voxel.n_estimate < min_points) continue;
+    in_reference += voxel.n_reference;
+    in_estimate += voxel.n_estimate;
+  }
+  return 2 * in_reference >= n_reference && 2 * in_estimate >= n_estimate;
+}
+
+/// Voxels of twice the size.
+std::vector<VoxelCount> doubled(std::vector<VoxelCount> voxels) {
+  for (VoxelCount& voxel : voxels) {
+    for (std::int64_t& axis : voxel.index) axis >>= 1;
+  }
+  std::ranges::sort(voxels, {}, &VoxelCount::index);
+  std::vector<VoxelCount> merged;
+  for (const VoxelCount& voxel : voxels) {
+    if (merged.empty() || merged.back().index != voxel.index) merged.push_back({voxel.index, 0, 0});
+    merged.back().n_reference += voxel.n_reference;
+    merged.back().n_estimate += voxel.n_estimate;
+  }
+  return merged;
+}
+
+}  // namespace
+
+std::optional<double> voxel_of_half(const MapPair& pair, double voxel_m, std::uint64_t min_points) {
+  constexpr int kMostDoublings = 8;
+  const PhasedFrame frame(united(pair.reference.index.bounds(), pair.estimate.index.bounds()), voxel_m, 1);
+  const ColorSource source(maps_of(pair), false);
+  std::vector<VoxelCount> voxels;
+  for (const CountUse& use : PhaseFold<ColorSource, CountUse>(maps_of(pair), frame, source).run({})) {
+    std::ranges::copy(use.voxels, std::back_inserter(voxels));
+  }
+  for (int doublings = 0; doublings < kMostDoublings; ++doublings) {
+    if (reach_half(voxels, min_points)) return std::ldexp(voxel_m, doublings);
+    voxels = doubled(std::move(voxels));
+  }
+  return std::nullopt;
+}
+
+}  // namespace cmap

@@ -1,0 +1,249 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <iterator>
+#include <optional>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include "cmap/core/parallel.hpp"
+#include "cmap/core/random_hash.hpp"
+#include "cmap/metrics/map_pair.hpp"
+#include "cmap/metrics/metric_inputs.hpp"
+#include "phased_frame.hpp"
+#include "voxels.hpp"
+
+// The moments of both maps in every voxel of every phase of a grid, from one pass over the points: those of the parts
+// of voxels are summed, and merged, without error, into the voxels of each phase. Cells of voxels are worked off one by
+// one; what lies in two of them is put together at the end.
+
+namespace cmap {
+
+/// What a voxel of one phase holds of both maps.
+template <class Moments>
+struct PhaseVoxel {
+  Moments reference{}, estimate{};
+};
+
+/// The points of one cell in both maps.
+struct PairedCell {
+  VoxelKey cell;
+  BothSides<std::span<const CellRun>> runs;
+
+  std::size_t n_points() const {
+    std::size_t n = 0;
+    for (const Side side : {Side::kEstimate, Side::kReference}) {
+      for (const CellRun& run : runs.of(side)) n += run.end - run.begin;
+    }
+    return n;
+  }
+};
+
+/// All cells of both maps, ordered.
+std::vector<PairedCell> paired_cells(std::span<const CellRun> reference, std::span<const CellRun> estimate);
+
+/// Whole cells for one task each: enough points to be worth one, where there are so many.
+std::vector<std::span<const PairedCell>> paired_tasks(std::span<const PairedCell> cells);
+
+inline constexpr int kPhaseCellBits = 4;
+inline constexpr std::uint64_t kHalvesSeed = 17;
+
+/// Both maps of a pair.
+inline BothSides<const IndexedMap*> maps_of(const MapPair& pair) { return {&pair.estimate, &pair.reference}; }
+
+/// Folds the points of a pair of maps, or of one map.
+/// `Source` has
+///   Moments                                                a voxel's sums: +=, and n(),
+///   bool add(Moments&, map, slot, world, VoxelKey)         adds a point; false of one that does not count,
+///   void merge(Moments&, const Moments& part, CornerStep)  adds those of a part, seen from another corner,
+///   bool halves                                            whether a random half of the reference is asked for.
+/// `Use`, one for each task, is a copy of `prototype` and has, once for each voxel,
+///   void voxel(int phase, const VoxelIndex&, const PhaseVoxel<Moments>&),
+///   void halves(const Moments& half, const Moments& all)   of the reference, in phase 0.
+template <class Source, class Use>
+class PhaseFold {
+ public:
+  using Moments = typename Source::Moments;
+
+  /// A side without a map has no points.
+  PhaseFold(const BothSides<const IndexedMap*>& maps, const PhasedFrame& frame, const Source& source)
+      : maps_(maps), frame_(frame), source_(source) {
+    const std::int32_t m = frame.parts_per_axis();
+    for (std::int32_t k = 0; k < m; ++k) {
+      voxel_of_part_.emplace_back();
+      for (std::int32_t part = 0; part < kVoxels * m; ++part) voxel_of_part_.back().push_back((part + k) / m);
+    }
+  }
+
+  std::vector<Use> run(const Use& prototype) const {
+    const std::vector<CellRun> reference = runs_of(Side::kReference), estimate = runs_of(Side::kEstimate);
+    const std::vector<PairedCell> cells = paired_cells(reference, estimate);
+    const std::vector<std::span<const PairedCell>> tasks = paired_tasks(cells);
+    std::vector<Use> used(tasks.size(), prototype);
+    std::vector<std::vector<OpenVoxel>> open(tasks.size());
+    parallel_chunks(tasks.size(), 1, [&](std::size_t i, std::size_t) {
+      Tables tables(frame_.parts_per_axis());
+      for (const PairedCell& cell : tasks[i]) {
+        sum_points(cell, tables);
+        if (source_.halves) hand_out_halves(tables, used[i]);
+        for (int phase = 0; phase < frame_.n_phases(); ++phase) hand_out(phase, cell.cell, tables, used[i], open[i]);
+        tables.clear();
+      }
+    });
+    close(open, prototype, used);
+    return used;
+  }
+
+ private:
+  static constexpr std::int32_t kVoxels = 1 << kPhaseCellBits;
+
+  /// A voxel of which other cells may hold parts, too.
+  struct OpenVoxel {
+    int phase;
+    VoxelIndex index;
+    PhaseVoxel<Moments> sums;
+    auto order() const { return std::tie(phase, index[0], index[1], index[2]); }
+  };
+
+  /// Of one cell: the parts of voxels, by where they lie, and voxels of one phase.
+  struct Tables {
+    explicit Tables(int m)
+        : reference(kVoxels * m), half(kVoxels * m), estimate(kVoxels * m), voxels(kVoxels + 1), halves(kVoxels + 1) {}
+    void clear() {
+      reference.clear();
+      half.clear();
+      estimate.clear();
+    }
+    LocalGrid<Moments> reference;  ///< of all its points, or of those that are not in the half
+    LocalGrid<Moments> half, estimate;
+    LocalGrid<PhaseVoxel<Moments>> voxels;
+    LocalGrid<std::array<Moments, 2>> halves;
+  };
+
+  std::vector<CellRun> runs_of(Side side) const {
+    const IndexedMap* map = maps_.of(side);
+    return map == nullptr ? std::vector<CellRun>{} : cell_runs(map->index, frame_.voxels(), kPhaseCellBits);
+  }
+
+  void sum_points(const PairedCell& cell, Tables& tables) const {
+    for_points(
+        Side::kEstimate, cell, [&](std::size_t) -> auto& { return tables.estimate; });
+    if (!source_.halves) {
+      for_points(
+          Side::kReference, cell, [&](std::size_t) -> auto& { return tables.reference; });
+      return;
+    }
+    for_points(
+        Side::kReference, cell, [&](std::size_t slot) -> auto& {
+          const std::uint32_t original = maps_.reference->index.points.original_index[slot];
+          return random_hash(original, kHalvesSeed) & 1 ? tables.half : tables.reference;
+        });
+  }
+
+  /// Adds every point to the table that table_of(slot) gives.
+  template <class TableOf>
+  void for_points(Side side, const PairedCell& cell, TableOf table_of) const {
+    if (cell.runs.of(side).empty()) return;
+    const IndexedMap& map = *maps_.of(side);
+    const PointBlocks& points = map.index.points;
+    const std::int32_t m = frame_.parts_per_axis();
+    constexpr std::int32_t kLocal = kVoxels - 1;
+    for (const CellRun& run : cell.runs.of(side)) {
+      for (std::size_t slot = run.begin; slot < run.end; ++slot) {
+        if (!source_.counts(map, slot)) continue;
+        const Eigen::Vector3d world = points.world(slot);
+        const auto [voxel, part] = frame_.place(world);
+        const LocalKey at{(voxel.x & kLocal) * m + part[0], (voxel.y & kLocal) * m + part[1],
+                          (voxel.z & kLocal) * m + part[2]};
+        source_.add(table_of(slot)[at], map, slot, world, voxel);
+      }
+    }
+  }
+
+  void hand_out_halves(Tables& tables, Use& use) const {
+    const auto gather = [&](const LocalGrid<Moments>& parts, std::size_t half) {
+      for (const auto& [part, moments] : parts.entries()) {
+        tables.halves[place(part, {0, 0, 0}).voxel][half] += moments;
+      }
+    };
+    gather(tables.half, 0);
+    gather(tables.reference, 1);
+    for (const auto& [at, halves] : tables.halves.entries()) use.halves(halves[0], halves[1]);
+    tables.halves.clear();
+  }
+
+  /// A part's voxel in a phase, counted from the cell's corner, and how many voxels after its own that is.
+  struct Place {
+    LocalKey voxel, after;
+  };
+
+  Place place(const LocalKey& part, const LocalKey& shift) const {
+    Place place{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto at = static_cast<std::size_t>(part[axis]);
+      place.voxel[axis] = voxel_of_part_[static_cast<std::size_t>(shift[axis])][at];
+      place.after[axis] = place.voxel[axis] - voxel_of_part_[0][at];
+    }
+    return place;
+  }
+
+  void hand_out(int phase, const VoxelKey& cell, Tables& tables, Use& use, std::vector<OpenVoxel>& open) const {
+    const LocalKey shift = frame_.shift(phase);
+    merge(tables.reference, shift, tables.voxels, &PhaseVoxel<Moments>::reference);
+    merge(tables.half, shift, tables.voxels, &PhaseVoxel<Moments>::reference);
+    merge(tables.estimate, shift, tables.voxels, &PhaseVoxel<Moments>::estimate);
+    for (const auto& [at, sums] : tables.voxels.entries()) {
+      bool is_open = false;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        is_open = is_open || (shift[axis] > 0 && (at[axis] == 0 || at[axis] == kVoxels));
+      }
+      const VoxelIndex index =
+          frame_.voxels().index(VoxelKey{cell.x * kVoxels + at[0], cell.y * kVoxels + at[1], cell.z * kVoxels + at[2]});
+      if (is_open) {
+        open.push_back({phase, index, sums});
+      } else {
+        use.voxel(phase, index, sums);
+      }
+    }
+    tables.voxels.clear();
+  }
+
+  void merge(const LocalGrid<Moments>& parts, const LocalKey& shift, LocalGrid<PhaseVoxel<Moments>>& voxels,
+             Moments PhaseVoxel<Moments>::*side) const {
+    for (const auto& [part, moments] : parts.entries()) {
+      const Place at = place(part, shift);
+      source_.merge(voxels[at.voxel].*side, moments, shift, at.after);
+    }
+  }
+
+  /// Puts the open voxels of all tasks together.
+  void close(const std::vector<std::vector<OpenVoxel>>& by_task, const Use& prototype, std::vector<Use>& used) const {
+    std::vector<const OpenVoxel*> open;
+    for (const auto& voxels : by_task) {
+      for (const OpenVoxel& voxel : voxels) open.push_back(&voxel);
+    }
+    std::ranges::sort(open, {}, [](const OpenVoxel* voxel) { return voxel->order(); });
+    Use rest = prototype;
+    for (auto first = open.begin(); first != open.end();) {
+      PhaseVoxel<Moments> sums = (*first)->sums;
+      auto next = std::next(first);
+      for (; next != open.end() && (*next)->order() == (*first)->order(); ++next) {
+        sums.reference += (*next)->sums.reference;
+        sums.estimate += (*next)->sums.estimate;
+      }
+      rest.voxel((*first)->phase, (*first)->index, sums);
+      first = next;
+    }
+    used.push_back(std::move(rest));
+  }
+
+  BothSides<const IndexedMap*> maps_;
+  const PhasedFrame& frame_;
+  const Source& source_;
+  std::vector<std::vector<std::int32_t>> voxel_of_part_;  ///< by shift and part of a cell
+};
+
+}  // namespace cmap
