@@ -9,11 +9,19 @@
 namespace cmap {
 namespace {
 
+std::uint64_t hash_of(const VoxelIndex& index) {
+  std::uint64_t hash = 19;
+  for (const std::int64_t axis : index) hash = random_hash(static_cast<std::uint64_t>(axis), hash);
+  return hash;
+}
+
 /// Takes the voxels of one task.
 struct ColorUse {
   std::uint64_t min_points;
   double step;
+  std::uint64_t most_hash;  ///< of voxels in the sample; 0: none
   std::vector<ColoredVoxel> voxels;
+  std::vector<ReferenceColors> sample;
   std::vector<double> of_halves;
   std::vector<ExactSum> sums;  ///< by phase
   std::vector<std::uint64_t> counts;
@@ -24,15 +32,18 @@ struct ColorUse {
     const double distance = wasserstein_distance(reference, colors.estimate.gaussian(step));
     sums[static_cast<std::size_t>(phase)].add(distance);
     ++counts[static_cast<std::size_t>(phase)];
-    if (phase == 0) voxels.push_back({index, distance, colors.estimate.n(), reference});
+    if (phase > 0) return;
+    voxels.push_back({index, distance, colors.reference.n(), colors.estimate.n()});
+    if (hash_of(index) < most_hash) sample.push_back({index, colors.estimate.n(), reference});
   }
   void halves(const ColorSums& one, const ColorSums& other) {
     if (one.n() < min_points || other.n() < min_points) return;
     of_halves.push_back(wasserstein_distance(one.gaussian(step), other.gaussian(step)));
   }
 
-  void take(const ColorUse& other) {
+  void take(ColorUse other) {
     std::ranges::copy(other.voxels, std::back_inserter(voxels));
+    std::ranges::copy(other.sample, std::back_inserter(sample));
     std::ranges::copy(other.of_halves, std::back_inserter(of_halves));
     for (std::size_t phase = 0; phase < sums.size(); ++phase) {
       sums[phase] += other.sums[phase];
@@ -40,6 +51,24 @@ struct ColorUse {
     }
   }
 };
+
+constexpr std::size_t kMostSampled = 20'000;
+
+/// The hash below which voxels are sampled: of twice as many as are wanted, if every voxel had no more points than it
+/// must.
+std::uint64_t sampled_hashes(const MapPair& pair, const PhaseOptions& options) {
+  if (!options.halves) return 0;
+  const double most_voxels = static_cast<double>(std::min(pair.reference.size(), pair.estimate.size())) /
+                             static_cast<double>(options.min_points);
+  const double share = 2.0 * kMostSampled / most_voxels;
+  return share < 1.0 ? static_cast<std::uint64_t>(share * 0x1p64) : ~std::uint64_t{0};
+}
+
+/// Those with the lowest hashes, in their order.
+void cut_sample(std::vector<ReferenceColors>& sample) {
+  std::ranges::sort(sample, {}, [](const ReferenceColors& voxel) { return hash_of(voxel.index); });
+  if (sample.size() > kMostSampled) sample.resize(kMostSampled);
+}
 
 }  // namespace
 
@@ -51,14 +80,18 @@ ColorWasserstein color_wasserstein(const MapPair& pair, const PhaseOptions& opti
   const ColorSource source(maps_of(pair), options.halves);
   const ColorUse none{std::max<std::uint64_t>(options.min_points, 2),
                       source.step,
+                      sampled_hashes(pair, options),
+                      {},
                       {},
                       {},
                       std::vector<ExactSum>(n_phases),
                       std::vector<std::uint64_t>(n_phases)};
   ColorUse all = none;
-  for (const ColorUse& use : PhaseFold<ColorSource, ColorUse>(maps_of(pair), frame, source).run(none)) all.take(use);
+  for (ColorUse& use : PhaseFold<ColorSource, ColorUse>(maps_of(pair), frame, source).run(none))
+    all.take(std::move(use));
 
-  ColorWasserstein found{std::move(all.voxels), {}, std::move(all.of_halves)};
+  cut_sample(all.sample);
+  ColorWasserstein found{std::move(all.voxels), {}, std::move(all.of_halves), std::move(all.sample)};
   for (std::size_t phase = 0; phase < n_phases; ++phase) {
     found.phase_means.push_back(all.sums[phase].value() / static_cast<double>(all.counts[phase]));
   }

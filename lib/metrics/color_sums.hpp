@@ -9,7 +9,6 @@
 #include "cmap/metrics/map_pair.hpp"
 #include "cmap/metrics/wasserstein.hpp"
 #include "phase_fold.hpp"
-#include "whole_sums.hpp"
 
 namespace cmap {
 
@@ -19,46 +18,37 @@ class ColorSums {
  public:
   void add(const std::array<std::uint64_t, 3>& color) {
     const auto [r, g, b] = color;
-    ++n_;
-    sum_[0] += r;
-    sum_[1] += g;
-    sum_[2] += b;
-    products_[0] += r * r;
-    products_[1] += r * g;
-    products_[2] += r * b;
-    products_[3] += g * g;
-    products_[4] += g * b;
-    products_[5] += b * b;
+    const std::array<std::uint64_t, 10> terms{1, r, g, b, r * r, r * g, r * b, g * g, g * b, b * b};
+    for (std::size_t i = 0; i < terms.size(); ++i) sums_[i] += terms[i];
   }
   ColorSums& operator+=(const ColorSums& other) {
-    n_ += other.n_;
-    for (std::size_t i = 0; i < sum_.size(); ++i) sum_[i] += other.sum_[i];
-    for (std::size_t i = 0; i < products_.size(); ++i) products_[i] += other.products_[i];
+    for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += other.sums_[i];
     return *this;
   }
 
-  std::uint64_t n() const { return n_; }
+  std::uint64_t n() const { return sums_[0]; }
 
   /// Of at least one point, in the unit of which a step is `step`. About whole numbers near the means, so that colors
   /// that are all alike have a scatter of 0.
   Gaussian gaussian(double step) const {
-    const auto n = static_cast<double>(n_);
+    const double per_point = 1.0 / in_double(n());
     Gaussian gaussian;
-    gaussian.n = n_;
+    gaussian.n = n();
     std::array<std::uint64_t, 3> center{};
     std::array<double, 3> rest{};
     for (std::size_t i = 0; i < 3; ++i) {
-      center[i] = static_cast<std::uint64_t>(static_cast<double>(sum_[i]) / n);
-      rest[i] = static_cast<double>(static_cast<std::int64_t>(sum_[i] - n_ * center[i]));
-      gaussian.mean[static_cast<Eigen::Index>(i)] = static_cast<double>(sum_[i]) / n * step;
+      const double mean = in_double(sum(i)) * per_point;
+      center[i] = static_cast<std::uint64_t>(static_cast<std::int64_t>(mean));
+      rest[i] = in_double(sum(i) - n() * center[i]);
+      gaussian.mean[static_cast<Eigen::Index>(i)] = mean * step;
     }
-    std::size_t product = 0;
+    std::size_t product = 4;
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t k = i; k < 3; ++k) {
         // Words wrap; what comes out is at most as large as the products.
         const std::uint64_t about =
-            products_[product++] - center[i] * sum_[k] - center[k] * sum_[i] + n_ * center[i] * center[k];
-        const double scatter = static_cast<double>(static_cast<std::int64_t>(about)) - rest[i] * rest[k] / n;
+            sums_[product++] - center[i] * sum(k) - center[k] * sum(i) + n() * center[i] * center[k];
+        const double scatter = in_double(about) - rest[i] * rest[k] * per_point;
         const auto row = static_cast<Eigen::Index>(i), column = static_cast<Eigen::Index>(k);
         gaussian.scatter(row, column) = gaussian.scatter(column, row) = scatter * (step * step);
       }
@@ -67,9 +57,10 @@ class ColorSums {
   }
 
  private:
-  std::uint64_t n_ = 0;
-  std::array<std::uint64_t, 3> sum_{};
-  std::array<std::uint64_t, 6> products_{};  ///< rr, rg, rb, gg, gb, bb
+  static double in_double(std::uint64_t word) { return static_cast<double>(static_cast<std::int64_t>(word)); }
+  std::uint64_t sum(std::size_t channel) const { return sums_[1 + channel]; }
+
+  std::array<std::uint64_t, 10> sums_{};  ///< n; r, g, b; rr, rg, rb, gg, gb, bb
 };
 
 /// The colors of points for a PhaseFold. Of maps of n points a color has so many bits that n squares fit 63: 16 for
@@ -88,12 +79,13 @@ struct ColorSource {
   bool counts(const IndexedMap& map, std::size_t slot) const { return map.has_color_at(slot); }
   void add(Moments& moments, const IndexedMap& map, std::size_t slot, const Eigen::Vector3d&, const VoxelKey&) const {
     const Eigen::Vector3f color = color_at(map.colors, slot);
-    const auto whole = [&](float level) -> std::uint64_t {
-      return whole_32(steps_per_level * static_cast<double>(level));
+    const auto whole = [&](float level) {
+      return static_cast<std::uint64_t>(static_cast<std::int64_t>(steps_per_level * static_cast<double>(level) + 0.5));
     };
     moments.add({whole(color.x()), whole(color.y()), whole(color.z())});
   }
-  void merge(Moments& into, const Moments& part, const LocalKey&, const LocalKey&) const { into += part; }
+  static constexpr bool kHasCorners = false;
+  void merge(Moments& into, const Moments& part) const { into += part; }
 
   bool halves;
   double steps_per_level;  ///< in 1/255

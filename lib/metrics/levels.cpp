@@ -1,9 +1,7 @@
 #include "cmap/metrics/levels.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <cstdio>
 
 #include "cmap/core/exact_sum.hpp"
 #include "cmap/core/parallel.hpp"
@@ -56,8 +54,9 @@ std::vector<SelfPair> self_pairs_of(const IndexedMap& map, std::span<const std::
   for (std::size_t i = 0; i < slots.size(); ++i) {
     // Of several entries at its place a point may not be among the first two.
     const std::uint32_t other = nearest[2 * i] == slots[i] ? nearest[2 * i + 1] : nearest[2 * i];
-    const Eigen::Vector3d apart = points.offset(slots[i]).cast<double>() - points.offset(other).cast<double>();
-    pairs.push_back({slots[i], other, apart.norm()});
+    const Eigen::Vector3f a = points.offset(slots[i]), b = points.offset(other);
+    const double rounding_m = kThresholdSteps * float_step(a.cwiseAbs().cwiseMax(b.cwiseAbs()).maxCoeff());
+    pairs.push_back({slots[i], other, (a.cast<double>() - b.cast<double>()).norm(), rounding_m});
   }
   return pairs;
 }
@@ -137,11 +136,9 @@ Level scaled(Level level, double factor) {
 
 std::vector<SelfPair> self_pairs_within(LevelInputs& levels, const std::optional<double>& threshold_m) {
   if (!threshold_m) return levels.self_pairs();
-  const PointBlocks& points = levels.inputs.pair->reference.index.points;
   std::vector<SelfPair> pairs;
   for (const SelfPair& pair : levels.self_pairs()) {
-    const float largest = points.offset(pair.slot).cwiseAbs().cwiseMax(points.offset(pair.other).cwiseAbs()).maxCoeff();
-    if (is_within(pair.distance_m * pair.distance_m, *threshold_m, kThresholdSteps, largest)) pairs.push_back(pair);
+    if (pair.distance_m <= *threshold_m + pair.rounding_m) pairs.push_back(pair);
   }
   return pairs;
 }
@@ -153,7 +150,9 @@ std::vector<double> self_distances(LevelInputs& levels, const std::optional<doub
 }
 
 Level self_share(LevelInputs& levels, double threshold_m) {
-  return share_level(self_pairs_within(levels, threshold_m).size(), levels.self_pairs().size());
+  const std::vector<SelfPair>& pairs = levels.self_pairs();
+  const auto is_in = [&](const SelfPair& pair) { return pair.distance_m <= threshold_m + pair.rounding_m; };
+  return share_level(static_cast<std::uint64_t>(std::ranges::count_if(pairs, is_in)), pairs.size());
 }
 
 Level voxel_level(std::span<const double> values, const std::string& too_few) {
@@ -189,11 +188,7 @@ void add_levels_of(Record& record, const Levels& levels, std::string_view better
 void add_levels(std::span<const Metric* const> metrics, std::vector<MetricRecord>& records, LevelInputs& levels,
                 std::vector<Warning>& warnings) {
   for (std::size_t i = 0; i < metrics.size(); ++i) {
-    if (metrics[i]->levels == nullptr) continue;
-    const auto t0 = std::chrono::steady_clock::now();
-    metrics[i]->levels(records[i].record, levels, warnings);
-    fprintf(stderr, "TIMING %s %.4f\n", std::string(metrics[i]->info.id).c_str(),
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - t0).count());
+    if (metrics[i]->levels != nullptr) metrics[i]->levels(records[i].record, levels, warnings);
   }
 }
 

@@ -24,35 +24,67 @@ std::vector<Column> columns_of(std::span<const VoxelDistance> voxels) {
   return columns;
 }
 
-/// The columns within a radius of one of them, in order.
-std::vector<Column> columns_around(std::span<const Column> columns, const Column& center, int radius) {
-  std::vector<Column> around;
-  for (std::int64_t x = center.x - radius; x <= center.x + radius; ++x) {
-    const auto before = [&](const Column& c) { return c.x < x || (c.x == x && c.y < center.y - radius); };
-    auto column = std::ranges::partition_point(columns, before);
-    for (; column != columns.end() && column->x == x && column->y <= center.y + radius; ++column) {
-      around.push_back(*column);
+/// A voxel of a neighborhood.
+struct Neighbor {
+  std::int64_t z;
+  std::size_t voxel;
+  double distance_m;
+};
+
+/// Where the columns of each x begin, and the end.
+std::vector<std::size_t> rows_of(std::span<const Column> columns) {
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (i == 0 || columns[i].x != columns[i - 1].x) rows.push_back(i);
+  }
+  rows.push_back(columns.size());
+  return rows;
+}
+
+/// The voxels of the columns within a radius of a column, in order.
+class Neighborhoods {
+ public:
+  Neighborhoods(std::span<const VoxelDistance> voxels, int radius)
+      : voxels_(voxels), radius_(radius), columns_(columns_of(voxels)), rows_(rows_of(columns_)) {}
+
+  std::span<const Column> columns() const { return columns_; }
+
+  void find(const Column& center, std::vector<Neighbor>& around) const {
+    around.clear();
+    const auto before = [&](std::size_t row) { return row < columns_.size() && columns_[row].x < center.x - radius_; };
+    auto row = std::ranges::partition_point(rows_, before);
+    for (; *row < columns_.size() && columns_[*row].x <= center.x + radius_; ++row) {
+      const std::span<const Column> of_row = std::span(columns_).subspan(*row, *std::next(row) - *row);
+      auto column = std::ranges::partition_point(of_row, [&](const Column& c) { return c.y < center.y - radius_; });
+      for (; column != of_row.end() && column->y <= center.y + radius_; ++column) add(*column, around);
     }
   }
-  return around;
-}
+
+ private:
+  void add(const Column& column, std::vector<Neighbor>& around) const {
+    for (std::size_t i = column.begin; i < column.end; ++i) {
+      around.push_back({voxels_[i].index[2], i, voxels_[i].distance_m});
+    }
+  }
+
+  std::span<const VoxelDistance> voxels_;
+  int radius_;
+  std::vector<Column> columns_;
+  std::vector<std::size_t> rows_;
+};
 
 /// Coefficient of variation of the distances around a voxel; NaN where the voxel is to be skipped.
 /// Differences to the voxel's own distance are summed: equal distances give a variance of exactly 0.
-double local_variation(std::span<const VoxelDistance> voxels, std::size_t center, std::span<const Column> around,
-                       int radius) {
-  const std::int64_t z = voxels[center].index[2];
+double local_variation(const VoxelDistance& center, std::size_t voxel, std::span<const Neighbor> around, int radius) {
   double n = 0.0, sum = 0.0, sum_sq = 0.0;
-  for (const Column& column : around) {
-    for (std::size_t other = column.begin; other < column.end; ++other) {
-      if (std::abs(voxels[other].index[2] - z) > radius || other == center) continue;
-      const double difference = voxels[other].distance_m - voxels[center].distance_m;
-      n += 1.0;
-      sum += difference;
-      sum_sq += difference * difference;
-    }
+  for (const Neighbor& other : around) {
+    if (std::abs(other.z - center.index[2]) > radius || other.voxel == voxel) continue;
+    const double difference = other.distance_m - center.distance_m;
+    n += 1.0;
+    sum += difference;
+    sum_sq += difference * difference;
   }
-  const double mean = voxels[center].distance_m + sum / n;
+  const double mean = center.distance_m + sum / n;
   const double variance = std::max(0.0, sum_sq / n - (sum / n) * (sum / n));
   return n > 0.0 && mean > 0.0 ? std::sqrt(variance) / mean : std::nan("");
 }
@@ -61,13 +93,15 @@ double local_variation(std::span<const VoxelDistance> voxels, std::size_t center
 
 std::vector<double> local_variations(std::span<const VoxelDistance> voxels, int radius_voxels) {
   constexpr std::size_t kColumnChunk = 64;
-  const std::vector<Column> columns = columns_of(voxels);
+  const Neighborhoods neighborhoods(voxels, radius_voxels);
+  const std::span<const Column> columns = neighborhoods.columns();
   std::vector<double> variations(voxels.size());
   parallel_chunks(columns.size(), kColumnChunk, [&](std::size_t begin, std::size_t end) {
-    for (const Column& column : std::span(columns).subspan(begin, end - begin)) {
-      const std::vector<Column> around = columns_around(columns, column, radius_voxels);
+    std::vector<Neighbor> around;
+    for (const Column& column : columns.subspan(begin, end - begin)) {
+      neighborhoods.find(column, around);
       for (std::size_t i = column.begin; i < column.end; ++i) {
-        variations[i] = local_variation(voxels, i, around, radius_voxels);
+        variations[i] = local_variation(voxels[i], i, around, radius_voxels);
       }
     }
   });

@@ -48,7 +48,7 @@ std::vector<PairedCell> paired_cells(std::span<const CellRun> reference, std::sp
 /// Whole cells for one task each: enough points to be worth one, where there are so many.
 std::vector<std::span<const PairedCell>> paired_tasks(std::span<const PairedCell> cells);
 
-inline constexpr int kPhaseCellBits = 4;
+inline constexpr int kPhaseCellBits = 5;  ///< a cell's parts fit the second-level cache; larger ones have less border
 inline constexpr std::uint64_t kHalvesSeed = 17;
 
 /// Both maps of a pair.
@@ -57,8 +57,12 @@ inline BothSides<const IndexedMap*> maps_of(const MapPair& pair) { return {&pair
 /// Folds the points of a pair of maps, or of one map.
 /// `Source` has
 ///   Moments                                                a voxel's sums: +=, and n(),
-///   bool add(Moments&, map, slot, world, VoxelKey)         adds a point; false of one that does not count,
-///   void merge(Moments&, const Moments& part, CornerStep)  adds those of a part, seen from another corner,
+///   bool counts(map, slot)                                 whether a point is summed,
+///   void add(Moments&, map, slot, world, VoxelKey)         adds it,
+///   bool kHasCorners                                       whether sums are about the corners of voxels,
+///   void merge(Moments&, const Moments& part)              adds those of a part; with corners, of a part that a phase
+///                                                          shifts, on each axis, into so many voxels after its own:
+///                                                          merge(Moments&, part, shift, after),
 ///   bool halves                                            whether a random half of the reference is asked for.
 /// `Use`, one for each task, is a copy of `prototype` and has, once for each voxel,
 ///   void voxel(int phase, const VoxelIndex&, const PhaseVoxel<Moments>&),
@@ -73,8 +77,7 @@ class PhaseFold {
       : maps_(maps), frame_(frame), source_(source) {
     const std::int32_t m = frame.parts_per_axis();
     for (std::int32_t k = 0; k < m; ++k) {
-      voxel_of_part_.emplace_back();
-      for (std::int32_t part = 0; part < kVoxels * m; ++part) voxel_of_part_.back().push_back((part + k) / m);
+      for (std::int32_t part = 0; part < kVoxels * m; ++part) voxel_of_part_[k][part] = (part + k) / m;
     }
   }
 
@@ -88,7 +91,7 @@ class PhaseFold {
       Tables tables(frame_.parts_per_axis());
       for (const PairedCell& cell : tasks[i]) {
         sum_points(cell, tables);
-        if (source_.halves) hand_out_halves(tables, used[i]);
+        if (source_.halves) take_halves(tables, used[i]);
         for (int phase = 0; phase < frame_.n_phases(); ++phase) hand_out(phase, cell.cell, tables, used[i], open[i]);
         tables.clear();
       }
@@ -111,14 +114,13 @@ class PhaseFold {
   /// Of one cell: the parts of voxels, by where they lie, and voxels of one phase.
   struct Tables {
     explicit Tables(int m)
-        : reference(kVoxels * m), half(kVoxels * m), estimate(kVoxels * m), voxels(kVoxels + 1), halves(kVoxels + 1) {}
+        : reference(kVoxels * m), estimate(kVoxels * m), half(kVoxels * m), voxels(kVoxels + 1), halves(kVoxels + 1) {}
     void clear() {
       reference.clear();
-      half.clear();
       estimate.clear();
     }
-    LocalGrid<Moments> reference;  ///< of all its points, or of those that are not in the half
-    LocalGrid<Moments> half, estimate;
+    LocalGrid<Moments> reference, estimate;
+    LocalGrid<Moments> half;  ///< of the reference, as long as it is apart
     LocalGrid<PhaseVoxel<Moments>> voxels;
     LocalGrid<std::array<Moments, 2>> halves;
   };
@@ -163,37 +165,31 @@ class PhaseFold {
     }
   }
 
-  void hand_out_halves(Tables& tables, Use& use) const {
+  /// Hands both halves of the reference out, and puts them together.
+  void take_halves(Tables& tables, Use& use) const {
     const auto gather = [&](const LocalGrid<Moments>& parts, std::size_t half) {
       for (const auto& [part, moments] : parts.entries()) {
-        tables.halves[place(part, {0, 0, 0}).voxel][half] += moments;
+        tables.halves[voxel_of(part, {0, 0, 0})][half] += moments;
       }
     };
     gather(tables.half, 0);
     gather(tables.reference, 1);
     for (const auto& [at, halves] : tables.halves.entries()) use.halves(halves[0], halves[1]);
     tables.halves.clear();
+    for (const auto& [part, moments] : tables.half.entries()) tables.reference[part] += moments;
+    tables.half.clear();
   }
 
-  /// A part's voxel in a phase, counted from the cell's corner, and how many voxels after its own that is.
-  struct Place {
-    LocalKey voxel, after;
-  };
-
-  Place place(const LocalKey& part, const LocalKey& shift) const {
-    Place place{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto at = static_cast<std::size_t>(part[axis]);
-      place.voxel[axis] = voxel_of_part_[static_cast<std::size_t>(shift[axis])][at];
-      place.after[axis] = place.voxel[axis] - voxel_of_part_[0][at];
-    }
-    return place;
+  /// The voxel, counted from the cell's corner, that holds a part in a phase with such a shift.
+  LocalKey voxel_of(const LocalKey& part, const LocalKey& shift) const {
+    LocalKey voxel;
+    for (std::size_t axis = 0; axis < 3; ++axis) voxel[axis] = voxel_of_part_[shift[axis]][part[axis]];
+    return voxel;
   }
 
   void hand_out(int phase, const VoxelKey& cell, Tables& tables, Use& use, std::vector<OpenVoxel>& open) const {
     const LocalKey shift = frame_.shift(phase);
     merge(tables.reference, shift, tables.voxels, &PhaseVoxel<Moments>::reference);
-    merge(tables.half, shift, tables.voxels, &PhaseVoxel<Moments>::reference);
     merge(tables.estimate, shift, tables.voxels, &PhaseVoxel<Moments>::estimate);
     for (const auto& [at, sums] : tables.voxels.entries()) {
       bool is_open = false;
@@ -214,8 +210,14 @@ class PhaseFold {
   void merge(const LocalGrid<Moments>& parts, const LocalKey& shift, LocalGrid<PhaseVoxel<Moments>>& voxels,
              Moments PhaseVoxel<Moments>::*side) const {
     for (const auto& [part, moments] : parts.entries()) {
-      const Place at = place(part, shift);
-      source_.merge(voxels[at.voxel].*side, moments, shift, at.after);
+      const LocalKey at = voxel_of(part, shift);
+      Moments& into = voxels[at].*side;
+      if constexpr (Source::kHasCorners) {
+        const LocalKey own = voxel_of(part, {0, 0, 0});
+        source_.merge(into, moments, shift, {at[0] - own[0], at[1] - own[1], at[2] - own[2]});
+      } else {
+        source_.merge(into, moments);
+      }
     }
   }
 
@@ -243,7 +245,7 @@ class PhaseFold {
   BothSides<const IndexedMap*> maps_;
   const PhasedFrame& frame_;
   const Source& source_;
-  std::vector<std::vector<std::int32_t>> voxel_of_part_;  ///< by shift and part of a cell
+  std::int32_t voxel_of_part_[3][3 * kVoxels] = {};  ///< by shift and part of a cell, on an axis
 };
 
 }  // namespace cmap

@@ -65,7 +65,7 @@ std::vector<CellRun> cell_runs(const Bvh& cloud, const VoxelFrame& frame, int ce
   });
   std::vector<CellRun> runs;
   for (const auto& chunk : by_chunk) runs.insert(runs.end(), chunk.begin(), chunk.end());
-  std::ranges::sort(runs, {}, order_of);
+  std::ranges::sort(runs, {}, [](const CellRun& run) { return order_of(run); });
   return runs;
 }
 

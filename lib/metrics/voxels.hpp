@@ -52,10 +52,8 @@ class LocalGrid {
 
   Sums& operator[](const LocalKey& key) {
     std::uint32_t& entry = entry_at_[place(key)];
-    if (entry == kFree) {
-      entry = static_cast<std::uint32_t>(entries_.size());
-      entries_.push_back({key, {}});
-    }
+    if (entry == kFree) [[unlikely]]
+      entry = add_entry(key);
     return entries_[entry].sums;
   }
   std::span<const Entry> entries() const { return entries_; }
@@ -68,6 +66,10 @@ class LocalGrid {
  private:
   static constexpr std::uint32_t kFree = ~0u;
 
+  [[gnu::noinline]] std::uint32_t add_entry(const LocalKey& key) {
+    entries_.push_back({key, {}});
+    return static_cast<std::uint32_t>(entries_.size() - 1);
+  }
   std::size_t place(const LocalKey& key) const {
     return static_cast<std::size_t>((key[0] * edge_ + key[1]) * edge_ + key[2]);
   }

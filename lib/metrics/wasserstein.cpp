@@ -33,6 +33,7 @@ struct PlaceSource {
            const VoxelKey& voxel) const {
     moments.add(steps_of.offset(world, voxel));
   }
+  static constexpr bool kHasCorners = true;
   void merge(Moments& into, const Moments& part, const LocalKey& shift, const LocalKey& after) const {
     std::array<std::int64_t, 3> by{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -96,20 +97,22 @@ double determinant(const Eigen::Matrix3d& m) {
 /// noise in both. Newton's method from above: r <= sqrt(3 e1), and r - sqrt(e1 + 2 q(r)) is convex.
 double trace_of_root(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
   constexpr int kMostSteps = 8;
+  constexpr double kNearEnough = 1e-9;  // each step squares what is missing
   const Eigen::Matrix3d cofactors_a = cofactors(a), cofactors_b = cofactors(b);
   const double e1 = std::max(0.0, a.cwiseProduct(b).sum());
   const double e2 = std::max(0.0, cofactors_a.cwiseProduct(cofactors_b).sum());
   if (e1 == 0.0) return 0.0;
-  double r = std::sqrt(3.0 * e1);
+  const double most = std::sqrt(3.0 * e1);
   // 3 e1 e3 <= e2^2, which noise may not break.
-  const double root_e3 = std::min(std::sqrt(determinant(a) * determinant(b)), e2 / r);
+  const double root_e3 = std::min(std::sqrt(determinant(a) * determinant(b)), e2 / most);
+  double r = std::sqrt(e1 + 2.0 * std::sqrt(e2 + 2.0 * root_e3 * most));
   for (int step = 0; step < kMostSteps; ++step) {
     const double q = std::sqrt(e2 + 2.0 * root_e3 * r);
     const double next = std::sqrt(e1 + 2.0 * q);
     const double slope = q > 0.0 ? root_e3 / (q * next) : 0.0;  // at most 1/9
     const double change = (next - r) / (1.0 - slope);
     r += change;
-    if (std::abs(change) <= 1e-16 * r) break;
+    if (std::abs(change) <= kNearEnough * r) break;
   }
   return r;
 }
@@ -140,8 +143,8 @@ std::vector<GaussianPair> gaussian_pairs(const MapPair& pair, double voxel_m, st
 }
 
 double wasserstein_distance(const Gaussian& a, const Gaussian& b) {
-  const Eigen::Matrix3d cov_a = a.covariance();
-  const Eigen::Matrix3d cov_b = b.covariance();
+  const Eigen::Matrix3d cov_a = a.scatter * (1.0 / static_cast<double>(a.n - 1));
+  const Eigen::Matrix3d cov_b = b.scatter * (1.0 / static_cast<double>(b.n - 1));
   const double traces = cov_a.trace() + cov_b.trace();
   const double sq = (a.mean - b.mean).squaredNorm() + traces - 2.0 * trace_of_root(cov_a, cov_b);
   return sq < 1e-12 * traces || sq <= 0.0 ? 0.0 : std::sqrt(sq);

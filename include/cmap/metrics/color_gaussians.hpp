@@ -8,11 +8,16 @@
 
 namespace cmap {
 
-/// A voxel that holds enough points of both maps that have a color, and what the reference's are: unit RGB in place of
-/// meters.
+/// A voxel that holds enough points of both maps that have a color.
 struct ColoredVoxel {
   VoxelIndex index;
-  double distance;  ///< 2-Wasserstein, of the Gaussians of both maps' colors
+  double distance;  ///< 2-Wasserstein, of the Gaussians of both maps' colors, unit RGB
+  std::uint64_t n_reference, n_estimate;
+};
+
+/// One of them with the reference's colors: a Gaussian of unit RGB in place of meters.
+struct ReferenceColors {
+  VoxelIndex index;
   std::uint64_t n_estimate;
   Gaussian reference;
 };
@@ -22,6 +27,7 @@ struct ColorWasserstein {
   std::vector<ColoredVoxel> voxels;  ///< of the grid at the world's origin, in an order that is always the same
   std::vector<double> phase_means;   ///< x slowest; the first is of `voxels`; NaN where no voxel qualifies
   std::vector<double> of_halves;     ///< distances between two random halves of the reference, if asked for; any order
+  std::vector<ReferenceColors> sample;  ///< of at most 20,000 voxels that their indices choose, if halves are asked for
 };
 
 /// In one pass over the points. Both maps need colors (std::invalid_argument). Throws UsageError for voxels too small

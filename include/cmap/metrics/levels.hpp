@@ -37,6 +37,7 @@ struct Levels {
 struct SelfPair {
   std::uint32_t slot, other;
   double distance_m;
+  double rounding_m;  ///< as far above a threshold it counts as at it (spatial/threshold.hpp)
 };
 
 /// What the levels of several metrics are found from, each made when it is first asked for. Not thread-safe.

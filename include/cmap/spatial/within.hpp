@@ -42,14 +42,22 @@ class PointsWithin {
  private:
   struct Search {
     Eigen::Vector3d place;
-    float largest_of_place;
+    Eigen::Vector3f float_place;
     double sq_radius, sq_reach;  ///< surely within, surely not
+    float sq_whole, sq_near;     ///< the same of boxes in single precision, on the safe side
   };
 
   Search search(const Eigen::Vector3f& place) const {
+    constexpr double kRounding = 1e-5;  // some of 2^-24 each
     const float largest = std::max(largest_, place.cwiseAbs().maxCoeff());
     const double reach_m = radius_m_ + steps_ * float_step(largest);
-    return {place.cast<double>(), place.cwiseAbs().maxCoeff(), radius_m_ * radius_m_, 1.0000001 * reach_m * reach_m};
+    const double sq_radius = radius_m_ * radius_m_, sq_reach = 1.0000001 * reach_m * reach_m;
+    return {place.cast<double>(),
+            place,
+            sq_radius,
+            sq_reach,
+            static_cast<float>(sq_radius * (1.0 - kRounding)),
+            static_cast<float>(sq_reach * (1.0 + kRounding))};
   }
 
   template <class Use>
@@ -57,19 +65,35 @@ class PointsWithin {
     return walk_node(search, static_cast<int>(index_.boxes.size()) - 1, 0, use);
   }
 
+  /// Squared distances from a place to the nearest and the farthest point of sixteen boxes.
+  struct BoxDistances {
+    float nearest[kBlockSize], farthest[kBlockSize];
+  };
+  static BoxDistances distances(const BoxNode& node, const Eigen::Vector3f& place) {
+    BoxDistances found;
+    const float x = place.x(), y = place.y(), z = place.z();
+    for (std::size_t c = 0; c < kBlockSize; ++c) {
+      const float x0 = node.min_x[c] - x, x1 = node.max_x[c] - x, y0 = node.min_y[c] - y, y1 = node.max_y[c] - y;
+      const float z0 = node.min_z[c] - z, z1 = node.max_z[c] - z;
+      const float gx = std::max(std::max(x0, -x1), 0.0f), gy = std::max(std::max(y0, -y1), 0.0f);
+      const float gz = std::max(std::max(z0, -z1), 0.0f);
+      const float fx = std::max(-x0, x1), fy = std::max(-y0, y1), fz = std::max(-z0, z1);
+      found.nearest[c] = gx * gx + gy * gy + gz * gz;
+      found.farthest[c] = fx * fx + fy * fy + fz * fz;
+    }
+    return found;
+  }
+
   /// Calls use(begin, end) for ranges of slots; true ends the walk.
   template <class Use>
   bool walk_node(const Search& search, int level, std::size_t node, Use& use) const {
-    const BoxNode& box = index_.boxes[static_cast<std::size_t>(level)][node];
+    const BoxDistances box = distances(index_.boxes[static_cast<std::size_t>(level)][node], search.float_place);
     for (std::size_t c = 0; c < kBlockSize; ++c) {
-      const Eigen::Array3d below = Eigen::Array3d(box.min_x[c], box.min_y[c], box.min_z[c]) - search.place.array();
-      const Eigen::Array3d above = search.place.array() - Eigen::Array3d(box.max_x[c], box.max_y[c], box.max_z[c]);
-      if (!(below.max(above).max(0.0).square().sum() <= search.sq_reach)) continue;  // absent ones, too
+      if (!(box.nearest[c] <= search.sq_near)) continue;  // absent ones, too: infinitely far
       const std::size_t child = node * kBlockSize + c;
-      const bool whole = below.abs().max(above.abs()).square().sum() <= search.sq_radius;
-      const bool ends = whole        ? use_all(level, child, use)
-                        : level == 0 ? scan_block(search, child, use)
-                                     : walk_node(search, level - 1, child, use);
+      const bool ends = box.farthest[c] <= search.sq_whole ? use_all(level, child, use)
+                        : level == 0                       ? scan_block(search, child, use)
+                                                           : walk_node(search, level - 1, child, use);
       if (ends) return true;
     }
     return false;
@@ -89,7 +113,8 @@ class PointsWithin {
       const double sq_dist = (offset.cast<double>() - search.place).squaredNorm();
       if (sq_dist > search.sq_reach) continue;
       if (sq_dist > search.sq_radius &&
-          !is_within(sq_dist, radius_m_, steps_, std::max(search.largest_of_place, offset.cwiseAbs().maxCoeff()))) {
+          !is_within(sq_dist, radius_m_, steps_,
+                     search.float_place.cwiseAbs().cwiseMax(offset.cwiseAbs()).maxCoeff())) {
         continue;
       }
       if (use(slot, slot + 1)) return true;

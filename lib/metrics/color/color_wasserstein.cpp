@@ -17,7 +17,7 @@ std::uint64_t n_colored(const IndexedMap& map) { return map.size() - map.n_witho
 /// The share of the points with a color that lie in the voxels.
 double share_in(std::span<const ColoredVoxel> voxels, const IndexedMap& map, Side side) {
   std::uint64_t n = 0;
-  for (const ColoredVoxel& voxel : voxels) n += side == Side::kEstimate ? voxel.n_estimate : voxel.reference.n;
+  for (const ColoredVoxel& voxel : voxels) n += side == Side::kEstimate ? voxel.n_estimate : voxel.n_reference;
   return static_cast<double>(n) / static_cast<double>(n_colored(map));
 }
 
@@ -33,27 +33,6 @@ void warn_of_few_voxels(const Record& record, const MetricInputs& inputs, std::v
                       fmt::format("color Wasserstein sees {:.3g} % of the estimate's points and {:.3g} % of the "
                                   "reference's: voxels of {} m that hold {} points of both; {}",
                                   100.0 * of_estimate, 100.0 * of_reference, o.cw_voxel_m, o.cw_min_points, remedy)});
-}
-
-std::uint64_t hash_of(const VoxelIndex& index) {
-  std::uint64_t hash = 19;
-  for (const std::int64_t axis : index) hash = random_hash(static_cast<std::uint64_t>(axis), hash);
-  return hash;
-}
-
-/// At most 20,000 of the voxels, those with the lowest hashes.
-std::vector<const ColoredVoxel*> sampled_voxels(const std::vector<ColoredVoxel>& voxels) {
-  constexpr std::size_t kMost = 20'000;
-  std::vector<std::pair<std::uint64_t, const ColoredVoxel*>> hashed;
-  for (const ColoredVoxel& voxel : voxels) hashed.emplace_back(hash_of(voxel.index), &voxel);
-  if (hashed.size() > kMost) {
-    std::ranges::nth_element(hashed, hashed.begin() + kMost);
-    hashed.resize(kMost);
-  }
-  std::ranges::sort(hashed);
-  std::vector<const ColoredVoxel*> sampled;
-  for (const auto& [hash, voxel] : hashed) sampled.push_back(voxel);
-  return sampled;
 }
 
 /// The Gaussian of n colors drawn with replacement.
@@ -75,14 +54,15 @@ Level drawn_chance(LevelInputs& levels, const std::string& too_few) {
   constexpr int kDraws = 5;
   constexpr std::size_t kVoxelChunk = 64;
   const std::vector<Eigen::Vector3d>& colors = levels.estimate_colors();
-  const std::vector<const ColoredVoxel*> voxels = sampled_voxels(levels.inputs.color_wasserstein->voxels);
+  const std::vector<ReferenceColors>& voxels = levels.inputs.color_wasserstein->sample;
   std::vector<double> means(voxels.size());
   parallel_chunks(voxels.size(), kVoxelChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const std::uint64_t seed = random_hash(hash_of(voxels[i]->index), 1);
+      std::uint64_t seed = 1;
+      for (const std::int64_t axis : voxels[i].index) seed = random_hash(static_cast<std::uint64_t>(axis), seed);
       for (std::uint64_t draw = 0; draw < kDraws; ++draw) {
-        const Gaussian drawn = drawn_gaussian(colors, voxels[i]->n_estimate, seed + draw);
-        means[i] += wasserstein_distance(voxels[i]->reference, drawn) / kDraws;
+        const Gaussian drawn = drawn_gaussian(colors, voxels[i].n_estimate, seed + draw);
+        means[i] += wasserstein_distance(voxels[i].reference, drawn) / kDraws;
       }
     }
   });
