@@ -8,7 +8,6 @@ import numpy as np
 import chances
 import floors
 
-SKILLED = {"color_distance": False, "color_fidelity": True, "local_color_recall": True, "color_wasserstein": False, "delta_e": False}  # higher
 
 
 def add_pair_floors(metrics, pairs, o):
