@@ -9,7 +9,8 @@ import numpy as np
 
 from ciede2000 import ciede2000, lab_from_srgb
 from geometry import mean, quantile
-from neighbors import pairs_within, voxel_groups
+from grids import Grid, band, phases, voxel_groups
+from neighbors import pairs_within
 
 Direction = namedtuple("Direction", "at own nearest")
 RANGE_EDGES_M = [0.0, 0.05, 0.1, 0.2, 0.5, 1.0]
@@ -100,12 +101,12 @@ def local_color_recall(best, tau, curve):
     return record
 
 
-def voxel_color_variance(points, colors, voxel, singletons, min_points):
+def voxel_color_variance(points, colors, grid, singletons, min_points):
     """tr cov(c), n-1, of the voxels: its mean over all occupied ones with those of one point as 0 (zero), and over those of at least
     max(min_points, 2) points (exclude)."""
     colored = is_colored(colors)
-    _, group, count = voxel_groups(points[colored], voxel)
-    colors, group = colors[colored], group.ravel()
+    _, group, count = voxel_groups(points[colored], grid)
+    colors = colors[colored]
     centers = np.stack([np.bincount(group, colors[:, k]) for k in range(3)], axis=1) / count[:, None]
     scatter = np.bincount(group, np.sum((colors - centers[group]) ** 2, axis=1))
     trace = np.where(count > 1, scatter / np.maximum(count - 1, 1), 0.0)
@@ -120,10 +121,13 @@ def voxel_color_variance(points, colors, voxel, singletons, min_points):
     return record
 
 
-def color_consistency(est, est_color, ref, ref_color, voxel, singletons, min_points):
-    """CCS of the estimate, and of the reference beside it."""
-    record = voxel_color_variance(est, est_color, voxel, singletons, min_points)
-    record["reference"] = voxel_color_variance(ref, ref_color, voxel, singletons, min_points)
+def color_consistency(est, est_color, ref, ref_color, voxel_m, singletons, min_points, n_grids):
+    """CCS of the estimate, and of the reference beside it; n_grids above 1: with the phases of the grid."""
+    record = voxel_color_variance(est, est_color, Grid(voxel_m), singletons, min_points)
+    record["reference"] = voxel_color_variance(ref, ref_color, Grid(voxel_m), singletons, min_points)
+    if n_grids > 1:
+        record["phases"] = band([voxel_color_variance(est, est_color, grid, singletons, min_points)["value"]
+                                 for grid in phases(voxel_m, n_grids)])
     return record
 
 

@@ -1,4 +1,4 @@
-"""Nearest neighbors with exact ties, pairs within a radius, and voxel groups: what every metric of the oracle reads."""
+"""Nearest neighbors with exact ties and pairs within a radius: what the metrics of the oracle read."""
 import numpy as np
 from scipy.spatial import cKDTree
 
@@ -48,6 +48,24 @@ def nearest(points, targets):
     return index, np.sqrt(squared_distance(points, targets[index]))
 
 
+def nearest_other(points):
+    """For each point the index of its nearest other entry (ties: the lowest index) and the distance; a copy at the same place is another."""
+    if len(points) < 2:
+        return np.empty(0, int), np.empty(0)
+    tree = cKDTree(points)
+    distance = tree.query(points, k=min(3, len(points)))[0]
+    index = np.empty(len(points), int)
+    # The own entry is among those at distance 0; which of them the tree gives first is its own affair.
+    reach = distance[:, 1] * (1 + 1e-8)
+    single = distance[:, 2] > reach if len(points) > 2 else np.ones(len(points), bool)
+    single &= distance[:, 1] > 0
+    index[single] = tree.query(points[single], k=2)[1][:, 1]
+    for i in np.flatnonzero(~single):
+        candidates = np.array(tree.query_ball_point(points[i], reach[i]))
+        index[i] = lowest_of_nearest(points[i], points, candidates[candidates != i])
+    return index, np.sqrt(squared_distance(points, points[index]))
+
+
 def pairs_within(points, targets, radius, rounded=False):
     """Yield (first, i, j) for chunks of points: every pair |points[first + i] - targets[j]| <= radius, sorted by i.
 
@@ -63,9 +81,3 @@ def pairs_within(points, targets, radius, rounded=False):
         distance = np.sqrt(squared_distance(chunk[i], targets[j]))
         inside = (thresholded(distance, chunk[i], targets[j]) if rounded else distance) <= radius
         yield first, i[inside], j[inside]
-
-
-def voxel_groups(points, voxel):
-    """Voxels floor(x / voxel): (keys m x 3 sorted, the voxel of each point, points in each voxel)."""
-    cells = np.floor(points / voxel).astype(np.int64)
-    return np.unique(cells, axis=0, return_inverse=True, return_counts=True)

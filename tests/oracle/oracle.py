@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Reference implementation of every metric of cmap, written apart from the library: numpy and scipy, in double.
 
-usage: oracle.py REF.ply EST.ply [--options file.json]     prints {"options": {...}, "metrics": {id: record}}
+usage: oracle.py REF.ply EST.ply [--options file.json]     prints {"options": {...}, "metrics": {id: record}, "sampled": {...}}
 """
 import argparse
 import json
@@ -12,7 +12,9 @@ import numpy as np
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import color  # noqa: E402
+import color_wasserstein  # noqa: E402
 import geometry  # noqa: E402
+import levels  # noqa: E402
 import structure  # noqa: E402
 from neighbors import common_origin, nearest, thresholded  # noqa: E402
 from ply import read_ply  # noqa: E402
@@ -26,14 +28,18 @@ DEFAULTS = {
     "ccs-voxel": 0.1,
     "ccs-singletons": "zero",
     "ccs-min-points": 2,
+    "ccs-phases": False,
+    "cw-voxel": 1.0,
+    "cw-min-points": 10,
     "awd-voxel": 3.0,
     "awd-min-points": 100,
     "scs-radius": 5,
     "mme-radius": 0.1,
     "mme-min-neighbors": 10,
     "color-max-distance": None,
+    "grid-phases": 8,
 }
-COLOR_METRICS = ["color_distance", "color_fidelity", "local_color_recall", "color_consistency", "delta_e",
+COLOR_METRICS = ["color_distance", "color_fidelity", "local_color_recall", "color_consistency", "color_wasserstein", "delta_e",
                  "color_distance_by_range", "median_color_distance", "color_distance_exposure_free", "color_psnr"]
 
 
@@ -61,10 +67,8 @@ def geometry_metrics(e2r, r2e, e2r_at, r2e_at, o):
 
 def structure_metrics(ref, est, origin, o):
     """Everything that reads local Gaussians."""
-    distances = structure.voxel_distances(est, ref, o["awd-voxel"], o["awd-min-points"])
     return {
-        "average_wasserstein": structure.average_wasserstein(distances),
-        "spatial_consistency": structure.spatial_consistency(distances, o["scs-radius"]),
+        **structure.voxel_metrics(est, ref, o["awd-voxel"], o["awd-min-points"], o["scs-radius"], o["grid-phases"]),
         "mean_map_entropy": structure.mean_map_entropy(est - origin, ref - origin, o["mme-radius"], o["mme-min-neighbors"]),
         "point_spacing": structure.point_spacing(est, ref),
     }
@@ -80,7 +84,9 @@ def color_metrics(ref, ref_color, est, est_color, e2r, r2e, origin, o):
         "color_fidelity": color.color_fidelity(cd["value"]),
         "local_color_recall": {**recall, **color.without_color(est_color, ref_color)},
         "color_consistency": color.color_consistency(est, est_color, ref, ref_color, o["ccs-voxel"], o["ccs-singletons"],
-                                                     o["ccs-min-points"]),
+                                                     o["ccs-min-points"], o["grid-phases"] if o["ccs-phases"] else 1),
+        "color_wasserstein": color_wasserstein.color_wasserstein(est, est_color, ref, ref_color, o["cw-voxel"], o["cw-min-points"],
+                                                                 o["grid-phases"]),
         "delta_e": color.delta_e(e2r, r2e, o["lcr-radius"]),
         "color_distance_by_range": color.color_distance_by_range(e2r, r2e),
         "median_color_distance": color.median_color_distance(e2r, r2e),
@@ -98,6 +104,7 @@ def evaluate(ref_path, est_path, given):
     origin = common_origin(ref, est)
     e2r_at = thresholded(e2r, est - origin, ref[index_er] - origin)
     r2e_at = thresholded(r2e, ref - origin, est[index_re] - origin)
+    er = re = None
     if ref_color is None or est_color is None:
         metrics = dict.fromkeys(COLOR_METRICS)
     else:
@@ -106,7 +113,8 @@ def evaluate(ref_path, est_path, given):
         metrics = color_metrics(ref, ref_color, est, est_color, er, re, origin, o)
     metrics.update(geometry_metrics(e2r, r2e, e2r_at, r2e_at, o))
     metrics.update(structure_metrics(ref, est, origin, o))
-    return {"options": o, "metrics": metrics}
+    sampled = levels.add_levels(metrics, (ref, ref_color, est, est_color), er, re, origin, o)
+    return {"options": o, "metrics": metrics, "sampled": sampled}
 
 
 def main():

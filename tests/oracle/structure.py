@@ -3,7 +3,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from geometry import mean, quantile
-from neighbors import float_steps, pairs_within, voxel_groups
+from grids import band, phases, rows_by_voxel
+from neighbors import float_steps, pairs_within
 
 
 def gaussian(points):
@@ -23,16 +24,9 @@ def wasserstein(points1, points2):
     return 0.0 if squared < 1e-12 * spread else float(np.sqrt(max(squared, 0.0)))
 
 
-def points_by_voxel(points, voxel, min_points):
-    """{voxel: points} for voxels of at least min_points."""
-    keys, group, count = voxel_groups(points, voxel)
-    parts = np.split(points[np.argsort(group, kind="stable")], np.cumsum(count)[:-1])
-    return {tuple(key): part for key, part in zip(keys, parts) if len(part) >= min_points}
-
-
-def voxel_distances(est, ref, voxel, min_points):
+def voxel_distances(est, ref, grid, min_points):
     """{voxel: W} over the voxels that hold at least max(min_points, 2) points of both maps."""
-    a, b = (points_by_voxel(p, voxel, max(min_points, 2)) for p in (est, ref))
+    a, b = (rows_by_voxel(p, p, grid, max(min_points, 2)) for p in (est, ref))
     return {key: wasserstein(a[key], b[key]) for key in sorted(a.keys() & b.keys())}
 
 
@@ -53,6 +47,16 @@ def spatial_consistency(distances, radius):
         if near.any() and w[near].mean() > 0:
             ratios.append(w[near].std() / w[near].mean())
     return {"value": mean(ratios), "n_voxels": len(ratios)}
+
+
+def voxel_metrics(est, ref, voxel_m, min_points, radius, n_grids):
+    """AWD and SCS at the world's origin and, unless n_grids is 1, over the phases of the grid."""
+    distances = [voxel_distances(est, ref, grid, min_points) for grid in phases(voxel_m, n_grids)]
+    awd, scs = [average_wasserstein(d) for d in distances], [spatial_consistency(d, radius) for d in distances]
+    if n_grids > 1:
+        for records in (awd, scs):
+            records[0]["phases"] = band([record["value"] for record in records])
+    return {"average_wasserstein": awd[0], "spatial_consistency": scs[0]}
 
 
 def neighborhood_covariances(points, radius, min_neighbors):

@@ -1,5 +1,8 @@
 #!/usr/bin/env python3
-"""Recompute the metrics of every data_samples/**/expected.json from the clouds beside it and the options in it."""
+"""Recompute the metrics and sampled levels of data_samples/**/expected.json from the clouds beside it and the options in it.
+
+usage: update_expected.py [SAMPLE...]     all of them, or those named: town, micro/ties
+"""
 import json
 import sys
 from pathlib import Path
@@ -14,10 +17,11 @@ SAMPLES = Path(__file__).resolve().parents[2] / "data_samples"
 
 def main():
     np.seterr(divide="raise", invalid="raise")
-    for path in sorted(SAMPLES.rglob("expected.json")):
+    named = [SAMPLES / name / "expected.json" for name in sys.argv[1:]]
+    for path in named or sorted(SAMPLES.rglob("expected.json")):
         options = json.loads(path.read_text())["options"]
-        metrics = evaluate(path.parent / "reference.ply", path.parent / "estimate.ply", options)["metrics"]
-        path.write_text(json.dumps({"options": options, "metrics": metrics}, indent=1, allow_nan=False) + "\n")
+        found = evaluate(path.parent / "reference.ply", path.parent / "estimate.ply", options)
+        path.write_text(json.dumps({**found, "options": options}, indent=1, allow_nan=False) + "\n")
         print(path.relative_to(SAMPLES))
 
 
