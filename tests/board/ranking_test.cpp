@@ -9,8 +9,6 @@
 namespace cmap {
 namespace {
 
-using ::testing::ElementsAre;
-
 constexpr Verdict kApart = Verdict::kDistinguishable, kAlike = Verdict::kNotDistinguishable,
                   kUntested = Verdict::kNoBootstrap;
 
@@ -48,9 +46,11 @@ Ranked ranked(std::vector<TableCell> cells, const VerdictOf& verdict_of, std::st
   return result;
 }
 
-TableCell number(double value) { return {std::to_string(value), value}; }
+TableCell cell(const std::string& text, std::optional<double> value) { return {text, value, Mark::kNone, ""}; }
 
-const TableCell kNothing{"-", {}};
+TableCell number(double value) { return cell(std::to_string(value), value); }
+
+const TableCell kNothing = cell("-", {});
 
 TEST(MarkDistinguishable, WhatIsApartIsRankedByValue) {
   EXPECT_EQ(ranked({number(2), number(1), number(3)}, Known{kApart}), (Ranked{"+*.", kApart}));
@@ -82,10 +82,10 @@ TEST(MarkDistinguishable, WhatNobodyTestedIsNeverSimplyBest) {
 }
 
 TEST(MarkDistinguishable, WhatLooksTheSameIsAlike) {
-  const TableCell same{"82.50", 0.82498}, as_same{"82.50", 0.825};
-  EXPECT_EQ(ranked({same, as_same, {"70.00", 0.7}}, Known{kApart}, "higher"), (Ranked{"**+", kAlike}));
-  EXPECT_EQ(ranked({same, as_same, {"70.00", 0.7}}, Known{kUntested}, "higher"), (Ranked{"??.", kUntested}));
-  const TableCell endless{"∞", INFINITY};
+  const TableCell same = cell("82.50", 0.82498), as_same = cell("82.50", 0.825), worse = cell("70.00", 0.7);
+  EXPECT_EQ(ranked({same, as_same, worse}, Known{kApart}, "higher"), (Ranked{"**+", kAlike}));
+  EXPECT_EQ(ranked({same, as_same, worse}, Known{kUntested}, "higher"), (Ranked{"??.", kUntested}));
+  const TableCell endless = cell("∞", INFINITY);
   EXPECT_EQ(ranked({endless, number(40), endless}, Known{kApart}, "higher"), (Ranked{"*+*", kAlike}));
 }
 

@@ -102,9 +102,9 @@ TEST(Typeset, ABandStandsBehindItsValue) {
   table.rows.push_back({{"x"}, {{"0.298", 0.298, Mark::kBestUntested, "", "± 0.097"}}});
   table.rows.push_back({{"y"}, {number(1, "12.50")}});
   EXPECT_EQ(typeset({table}, TableFormat::kText),
-            "method              A\n"
+            "method               A\n"
             "x       0.298? ± 0.097\n"
-            "y               12.50\n");
+            "y                12.50\n");
   EXPECT_THAT(typeset({table}, TableFormat::kMarkdown), HasSubstr("| x | 0.298? ± 0.097 |"));
   EXPECT_THAT(typeset({table}, TableFormat::kLatex), HasSubstr("x & \\cellcolor{gray!25}0.298 $\\pm$ 0.097 \\\\"));
   std::vector<ScoreTable> tables{table};
