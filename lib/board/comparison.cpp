@@ -125,7 +125,7 @@ std::string format_comparison(const std::vector<SavedReport>& reports, const Com
   }
   const std::optional<TableFormat> typeset_as = table_format(format);
   std::vector<std::string>& notes = tables.front().notes;
-  if (typeset_as) notes.push_back(marks_note(*typeset_as, options.plain_ranking) + "; - no value");
+  if (typeset_as) notes.push_back(marks_note(*typeset_as, options.plain_ranking) + "; " + missing_note(*typeset_as));
   for (const auto& more :
        {notes_on_scores(comparison, ranked, distinction.evidence()), notes_on_reports(reports, options)})
     notes.insert(notes.end(), more.begin(), more.end());

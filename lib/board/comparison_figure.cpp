@@ -19,15 +19,14 @@ std::string title_with_unit(const std::string& title, const ScoreKind& kind) {
   return fmt::format("{} {}{}", title, arrow(kind), unit.empty() ? "" : fmt::format(" [{}]", unit));
 }
 
-/// The interval of a report, else the spread over the grid's phases.
+/// The spread over the grid's phases, else the interval of the report.
 std::optional<Range> range_of(const Json& report, const std::vector<Score>& scores, const ScoreKind& kind) {
-  const Json::json_pointer place("/intervals/metrics/" + kind.metric);
-  if (kind.part.empty() && report.contains(place) && report.at(place).value("lower", Json()).is_number()) {
-    return Range{report.at(place).at("lower").get<double>(), report.at(place).at("upper").get<double>()};
-  }
   const Score* score = score_of(scores, kind);
-  return score != nullptr && score->phases ? std::optional(Range{score->phases->min, score->phases->max})
-                                           : std::nullopt;
+  if (score != nullptr && score->phases) return Range{score->phases->min, score->phases->max};
+  const Json::json_pointer lower(fmt::format("/intervals/metrics/{}/lower", kind.metric)),
+      upper(fmt::format("/intervals/metrics/{}/upper", kind.metric));
+  if (!kind.part.empty() || !report.contains(lower) || !report.at(lower).is_number()) return std::nullopt;
+  return Range{report.at(lower).get<double>(), report.at(upper).get<double>()};
 }
 
 std::vector<BarChart> bar_charts(const std::vector<SavedReport>& reports, const ComparisonScores& comparison) {
@@ -49,8 +48,8 @@ std::string note_on(const std::vector<BarChart>& charts) {
   const auto has_range = [](const BarChart& chart) {
     return std::ranges::any_of(chart.ranges, [](const auto& range) { return range.has_value(); });
   };
-  return std::ranges::any_of(charts, has_range) ? "Lines over bars: the report's interval (--bootstrap), else from the "
-                                                  "least to the greatest of the grid's phases"
+  return std::ranges::any_of(charts, has_range) ? "Lines over bars: from the least to the greatest over the grid's "
+                                                  "phases, else the report's interval (--bootstrap)"
                                                 : "";
 }
 

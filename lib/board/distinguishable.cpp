@@ -67,7 +67,7 @@ Verdict Distinction::verdict(const ScoreKind& kind, std::size_t a, std::size_t b
   if (changes || zero) {
     return changes.value_or(false) || zero.value_or(false) ? Verdict::kNotDistinguishable : Verdict::kDistinguishable;
   }
-  return bootstrap_.has_blocks(a) && bootstrap_.has_blocks(b) ? Verdict::kNoInterval : Verdict::kNoBootstrap;
+  return bootstrap_.lacks_blocks(a) || bootstrap_.lacks_blocks(b) ? Verdict::kNoBootstrap : Verdict::kNoInterval;
 }
 
 std::vector<std::string> ranking_notes(const RankingCounts& counts, const Evidence& evidence) {

@@ -30,8 +30,9 @@ std::string typeset_with_notes(std::vector<ScoreTable> tables, const std::vector
 }
 
 std::vector<std::string> with_marks(TableFormat format, const LeaderboardLook& look, std::vector<std::string> notes) {
-  notes.insert(notes.begin(), fmt::format("of each column: {}; - no value or no map, x failed",
-                                          marks_note(format, look.plain_ranking)));
+  notes.insert(notes.begin(),
+               fmt::format("of each column: {}; {} or no map, {} failed", marks_note(format, look.plain_ranking),
+                           missing_note(format), format == TableFormat::kLatex ? "×" : kFailedMark));
   return notes;
 }
 

@@ -43,6 +43,10 @@ bool PairedBootstrap::has_blocks(std::size_t i) const {
   return reports_[i] != nullptr && reports_[i]->contains("intervals");
 }
 
+bool PairedBootstrap::lacks_blocks(std::size_t i) const {
+  return !has_blocks(i) && (reports_[i] == nullptr || reports_[i]->at("inputs").contains("reference"));
+}
+
 double PairedBootstrap::level() const {
   for (std::size_t i = 0; i < reports_.size(); ++i) {
     if (has_blocks(i)) return options_of(reports_[i]->at("intervals")).level;

@@ -21,6 +21,8 @@ class PairedBootstrap {
 
   /// Whether map i was evaluated with --bootstrap.
   bool has_blocks(std::size_t i) const;
+  /// Whether it could have been, as maps with a reference can, and was not.
+  bool lacks_blocks(std::size_t i) const;
 
   /// That the intervals hold the difference with; of the first map that has blocks.
   double level() const;

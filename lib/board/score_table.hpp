@@ -58,6 +58,8 @@ enum class TableFormat { kText, kMarkdown, kLatex };
 
 /// What the marks of the format mean. Best and second best stand by value alone where `is_plain`.
 std::string marks_note(TableFormat format, bool is_plain);
+/// "- no value".
+std::string missing_note(TableFormat format);
 
 /// The tables one after the other. Notes that tables share stand once, at the end.
 std::string typeset(const std::vector<ScoreTable>& tables, TableFormat format);

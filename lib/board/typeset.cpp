@@ -170,6 +170,8 @@ std::string marks_note(TableFormat format, bool is_plain) {
   return "red best, orange second best" + untested;
 }
 
+std::string missing_note(TableFormat format) { return format == TableFormat::kLatex ? "-- no value" : "- no value"; }
+
 std::string typeset(const std::vector<ScoreTable>& tables, TableFormat format) {
   std::string text =
       format == TableFormat::kLatex ? "% needs \\usepackage{booktabs,graphicx} and \\usepackage[table]{xcolor}\n" : "";

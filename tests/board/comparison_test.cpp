@@ -179,6 +179,7 @@ TEST(OneMap, ComparesWithItsLike) {
   require_comparable({a, b});
   const std::string table = format_comparison({a, b}, {}, ComparisonFormat::kText);
   EXPECT_THAT(table, ContainsRegex("color consistency +CCS +↓ +unit RGB\\^2 +[0-9.]+. +[0-9.]+."));
+  EXPECT_THAT(table, HasSubstr("not tested (no interval of the difference)")) << "no --bootstrap would help";
   EXPECT_THAT(table, ContainsRegex("point spacing +m +[0-9.]+ +[0-9.]+\n")) << "neither is better";
   EXPECT_THAT(table, Not(HasSubstr("SHA-256")));
   EXPECT_EQ(refusal_of<UsageError>([&] {

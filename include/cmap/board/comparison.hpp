@@ -60,7 +60,7 @@ std::string format_comparison(const std::vector<SavedReport>& reports, const Com
 /// Throws UsageError for a name that is no picture's, UnsupportedError where pictures other than .svg are not built.
 void check_figure_name(const std::filesystem::path& name);
 
-/// A chart of bars for each metric, with the report's interval or the spread over the grid's phases, and of curves for
+/// A chart of bars for each metric, with the spread over the grid's phases or the report's interval, and of curves for
 /// each with thresholds, and of local color recall and its chance against tau where a report has them: as SVG, or as a
 /// picture of the name's format.
 void write_comparison_figure(const std::vector<SavedReport>& reports, const ComparisonOptions& options,
