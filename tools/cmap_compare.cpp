@@ -18,22 +18,24 @@ using cmap::ComparisonFormat;
 using cmap::ExitCode;
 
 constexpr const char* kDescription =
-    "Puts saved reports of cmap_eval side by side: one row for each metric, one column for each report, best and "
-    "second\n"
-    "best marked. Refuses reports whose numbers do not compare: other parameters, definitions or reference map, as "
-    "far\n"
-    "as they bear on --metrics; says where reports come from different versions of cmap.";
+    "Puts saved reports of cmap_eval side by side: one row for each metric and its skill, one column for each report.\n"
+    "Best and second best are marked, and share their mark with what is not distinguishable from them: the 95 %\n"
+    "interval of the paired difference (reports made with --bootstrap) holds 0, or its sign changes over the grid's\n"
+    "phases. What neither tests is marked as not tested. Refuses reports whose numbers do not compare: other\n"
+    "parameters, definitions or reference map, as far as they bear on --metrics; says where reports come from\n"
+    "different versions of cmap.";
 
 constexpr const char* kExample =
     "Examples:\n"
-    "  cmap_eval data_samples/town/reference.ply data_samples/town/estimate.ply --quiet -o a.json\n"
-    "  cmap_eval data_samples/town/reference.ply data_samples/town/reference.ply --quiet -o b.json\n"
+    "  cmap_eval data_samples/town/reference.ply data_samples/town/estimate.ply --bootstrap 1000 --quiet -o a.json\n"
+    "  cmap_eval data_samples/town/reference.ply data_samples/town/reference.ply --bootstrap 1000 --quiet -o b.json\n"
     "  cmap_compare a.json b.json --baseline a.json\n"
     "  cmap_compare a.json b.json --figure chart.svg --format html -o comparison.html\n"
     "  cmap_compare a.json b.json --names Ours,Truth --metrics color,AC --format latex -o table.tex\n"
     "\n"
-    "Formats: text (* best, + second best), markdown, csv (all digits, empty where there is no value), latex\n"
-    "(booktabs, graphicx, xcolor; shrunk to the column where it is wider), html (one file, sortable, offline).\n"
+    "Formats: text (* best, + second best, ? best by value alone, not tested), markdown, csv (all digits, empty where\n"
+    "there is no value), latex (booktabs, graphicx, xcolor; shrunk to the column where it is wider), html (one file,\n"
+    "sortable, offline).\n"
     "Exit codes: 0 done; 2 wrong usage, no reports, or reports that do not compare; 3 a report is missing or damaged;\n"
     "4 this build has no pictures but .svg; 70 internal error.";
 
@@ -42,6 +44,7 @@ struct Arguments {
   ComparisonFormat format = ComparisonFormat::kText;
   std::string baseline, output, figure;
   std::vector<std::string> metrics, names;
+  bool plain_ranking = false, bands = false;
 };
 
 const cmap::EnumNames<ComparisonFormat> kFormats{{ComparisonFormat::kText, "text"},
@@ -64,6 +67,10 @@ void add_options(cmap::CommandLine& line, Arguments& a) {
       .with_commas()
       .one_at_a_time()
       .not_empty();
+  line.add_flag("--plain-ranking", a.plain_ranking,
+                "mark best and second best by value alone, whatever noise does to them");
+  line.add_flag("--bands", a.bands,
+                "in LaTeX, too, write the spread over the grid's phases behind a value: 0.298 ± 0.097");
   line.add("-o,--output", a.output, "FILE", "write here in place of standard output").not_empty();
   line.add("--figure", a.figure, "FILE", "chart of every metric, and curves: .svg, .png, .jpg, .tif").not_empty();
 }
@@ -79,7 +86,7 @@ std::size_t place_baseline(const std::string& baseline, std::vector<std::string>
 }
 
 ExitCode run(Arguments arguments) {
-  cmap::ComparisonOptions options{arguments.metrics, std::nullopt};
+  cmap::ComparisonOptions options{arguments.metrics, std::nullopt, arguments.plain_ranking, arguments.bands};
   if (!arguments.baseline.empty()) options.baseline = place_baseline(arguments.baseline, arguments.reports);
   cmap::refuse_overwriting(arguments.reports, {arguments.output, arguments.figure});
   for (const std::string& output : {arguments.output, arguments.figure}) cmap::require_writable(output);

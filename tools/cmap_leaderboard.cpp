@@ -17,11 +17,12 @@ namespace {
 using cmap::ExitCode;
 
 constexpr const char* kDescription =
-    "Evaluates the maps of several methods on several sequences and writes the tables of a paper: tables.md, "
-    "tables.csv,\n"
-    "tables.tex and index.html with pictures, and the report of every map below pairs/. What is done already is kept: "
-    "a\n"
-    "run that was stopped goes on where it was. Maps that fail are marked x and stop nothing; missing ones are -.";
+    "Evaluates the maps of several methods on several sequences and writes the tables of a paper: tables.md,\n"
+    "tables.csv, tables.tex and index.html with pictures, and the report of every map below pairs/. What is done\n"
+    "already is kept: a run that was stopped goes on where it was. Maps that fail are marked x and stop nothing;\n"
+    "missing ones are -. Methods that are not distinguishable share their mark: \"bootstrap\": 1000 among the "
+    "parameters\n"
+    "tests what the grid's phases do not.";
 
 constexpr const char* kExample =
     "Example:\n"
@@ -29,7 +30,7 @@ constexpr const char* kExample =
     "\n"
     "The manifest is JSON, comments allowed; paths are below the data root:\n"
     "  {\"version\": 1,\n"
-    "   \"parameters\": {\"lcr-radius\": 0.5},\n"
+    "   \"parameters\": {\"lcr-radius\": 0.5, \"bootstrap\": 1000},\n"
     "   \"sequences\": [{\"name\": \"town\", \"reference\": \"town/reference.ply\"}],\n"
     "   \"methods\": [{\"name\": \"Ours\", \"maps\": {\"town\": \"town/estimate.ply\"}, \"failed\": []}],\n"
     "   \"published\": \"paper.json\"}\n"
@@ -40,6 +41,7 @@ constexpr const char* kExample =
 
 struct Arguments {
   std::string manifest, data_root = ".", output;
+  cmap::LeaderboardLook look;
   cmap::CommonArguments common;
 };
 
@@ -47,6 +49,9 @@ void add_options(cmap::CommandLine& line, Arguments& a) {
   line.add("MANIFEST", a.manifest, "FILE.json", "sequences, methods and their maps").required();
   line.add("--data-root", a.data_root, "DIR", "folder that the manifest's paths start from [.]").not_empty();
   line.add("-o,--output", a.output, "DIR", "folder to write to; its results are used again").required().not_empty();
+  line.add_flag("--plain-ranking", a.look.plain_ranking,
+                "mark best and second best by value alone, whatever noise does to them");
+  line.add_flag("--bands", a.look.bands, "in tables.tex, too, write the spread over the grid's phases behind a value");
   cmap::add_common_options(line, a.common, "no tables, no progress");
 }
 
@@ -66,7 +71,7 @@ ExitCode run(const Arguments& arguments) {
     };
   }
   const std::vector<cmap::LeaderboardPair> pairs = cmap::evaluate_leaderboard(manifest, leaderboard);
-  const cmap::LeaderboardDocuments documents = cmap::typeset_leaderboard(manifest, pairs);
+  const cmap::LeaderboardDocuments documents = cmap::typeset_leaderboard(manifest, pairs, arguments.look);
   cmap::write_documents(documents, arguments.output);
   if (!arguments.common.quiet) cmap::print(documents.text);
   return ExitCode::kDone;

@@ -17,6 +17,7 @@ namespace {
 
 using Color = Drawing::Color;
 using Anchor = Drawing::Anchor;
+using Points = std::vector<std::array<double, 2>>;
 
 constexpr Color kPaper{255, 255, 255}, kInk{27, 31, 36}, kMuted{110, 118, 129}, kGrid{226, 230, 234};
 /// Okabe and Ito's colors, which color-blind readers tell apart; the yellow left out, as it fades on white.
@@ -90,7 +91,7 @@ class Charts {
     if (!is_hollow(report) || width < 2.0 * kRim || height < 2.0 * kRim) return;
     box(x + kRim, y + kRim, width - 2.0 * kRim, height - 2.0 * kRim, kPaper);
   }
-  void line(std::vector<std::array<double, 2>> points, Color color, double width) {
+  void line(Points points, Color color, double width) {
     drawing.shapes.emplace_back(Drawing::Line{std::move(points), color, width});
   }
 
@@ -98,6 +99,7 @@ class Charts {
   double legend(double top);
   void bars(const Panel& panel, const BarChart& chart);
   void curves(const Panel& panel, const CurveChart& chart);
+  void note(double top, const std::string& words) { text(kMargin, top, words, kTextSize, kMuted); }
 
   static constexpr double kBarHeight = 22.0, kHeadHeight = 28.0, kCurveHeadHeight = 40.0, kPlotHeight = 220.0,
                           kAxisHeight = 44.0;
@@ -105,6 +107,8 @@ class Charts {
 
  private:
   void axes(const Panel& panel, double left, double x_end, double y_end, const std::string& x_title);
+  void range(double from, double to, double y);
+  void dashes(const Points& points, Color color);
 
   const std::vector<std::string>& names_;
 };
@@ -126,12 +130,16 @@ double Charts::legend(double top) {
   return y + kRow / 2.0 + kGap / 2.0;
 }
 
-/// From where to where the bars go, zero among it; an infinite one a little farther than the others.
-std::pair<double, double> span_of(const std::vector<std::optional<double>>& values) {
+/// From where to where the bars and their ranges go, zero among it; an infinite one a little farther than the others.
+Range span_of(const BarChart& chart) {
   constexpr double kFarther = 1.25;
   double low = 0.0, high = 0.0;
   bool is_endless = false;
-  for (const double value : values | std::views::transform([](const auto& v) { return v.value_or(0.0); })) {
+  for (const auto& range : chart.ranges) {
+    low = std::min(low, range.value_or(Range{}).first);
+    high = std::max(high, range.value_or(Range{}).second);
+  }
+  for (const double value : chart.values | std::views::transform([](const auto& v) { return v.value_or(0.0); })) {
     is_endless = is_endless || std::isinf(value);
     if (!std::isfinite(value)) continue;
     low = std::min(low, value);
@@ -140,19 +148,33 @@ std::pair<double, double> span_of(const std::vector<std::optional<double>>& valu
   return {low, is_endless ? std::max(kFarther * high, 1.0) : high};
 }
 
+/// Ink on a rim of paper, to be seen on bar and page.
+void Charts::range(double from, double to, double y) {
+  constexpr double kCap = 4.0;
+  for (const auto& [color, width] : {std::pair(kPaper, 3.6), std::pair(kInk, 1.4)}) {
+    line({{from, y}, {to, y}}, color, width);
+    for (const double end : {from, to}) line({{end, y - kCap}, {end, y + kCap}}, color, width);
+  }
+}
+
 void Charts::bars(const Panel& panel, const BarChart& chart) {
   constexpr double kNameShare = 0.28, kValueShare = 0.24;
   text(panel.x, panel.y + kHeadHeight / 2.0, chart.title, kTitleSize, kInk);
-  const auto [low, high] = span_of(chart.values);
+  const auto [low, high] = span_of(chart);
   const double left = panel.x + kNameShare * panel.width, room = (1.0 - kNameShare - kValueShare) * panel.width;
   const double scale = high > low ? room / (high - low) : 0.0;
   const double zero = left - low * scale;
   for (std::size_t i = 0; i < chart.values.size(); ++i) {
     const double y = panel.y + kHeadHeight + (static_cast<double>(i) + 0.5) * kBarHeight;
     text(left - 8.0, y, shortened(names_[i], 12), kTextSize, kMuted, Anchor::kRight);
-    const double end = zero + std::clamp(chart.values[i].value_or(0.0), low, high) * scale;
+    double end = zero + std::clamp(chart.values[i].value_or(0.0), low, high) * scale;
     if (chart.values[i]) {
       report_box(std::min(zero, end), y - 0.36 * kBarHeight, std::abs(end - zero), 0.72 * kBarHeight, i);
+    }
+    if (!chart.ranges.empty() && chart.ranges[i]) {
+      const auto [least, most] = *chart.ranges[i];
+      range(zero + least * scale, zero + most * scale, y);
+      end = std::max(end, zero + most * scale);
     }
     text(std::max(zero, end) + 6.0, y, chart.texts[i], kTextSize, kInk);
   }
@@ -175,40 +197,72 @@ void Charts::axes(const Panel& panel, double left, double x_end, double y_end, c
   text((left + right) / 2.0, bottom + 32.0, x_title, kTextSize, kMuted, Anchor::kCenter);
 }
 
+/// The stretches of a curve between its missing values, placed.
+template <class PlaceOf>
+std::vector<Points> runs_of(const std::vector<double>& x, const std::vector<std::optional<double>>& y,
+                            PlaceOf&& place_of) {
+  std::vector<Points> runs(1);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (y[i]) {
+      runs.back().push_back(place_of(x[i], *y[i]));
+    } else if (!runs.back().empty()) {
+      runs.emplace_back();
+    }
+  }
+  if (runs.back().empty()) runs.pop_back();
+  return runs;
+}
+
+/// Single lines, as a drawing knows no dashes; they go on around corners.
+void Charts::dashes(const Points& points, Color color) {
+  constexpr double kDash = 6.0, kPeriod = 10.0;
+  double passed = 0.0;  // along the curve
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const auto &from = points[i - 1], &to = points[i];
+    const double length = std::hypot(to[0] - from[0], to[1] - from[1]);
+    if (length == 0.0) continue;
+    const auto at = [&](double way) -> std::array<double, 2> {
+      const double share = std::clamp(way / length, 0.0, 1.0);
+      return {from[0] + share * (to[0] - from[0]), from[1] + share * (to[1] - from[1])};
+    };
+    const double first = std::floor(passed / kPeriod) * kPeriod - passed;
+    for (double start = first; start < length; start += kPeriod) {
+      if (start + kDash > 0.0) line({at(start), at(start + kDash)}, color, 1.6);
+    }
+    passed += length;
+  }
+}
+
 void Charts::curves(const Panel& panel, const CurveChart& chart) {
   constexpr double kLabels = 56.0, kDot = 6.0;
   text(panel.x, panel.y + kHeadHeight / 2.0, chart.title, kTitleSize, kInk);
   double highest = 0.0;
-  for (const auto& values : chart.y) {
-    for (const auto& value : values) highest = std::max(highest, value.value_or(0.0));
+  for (const auto* curves : {&chart.y, &chart.dashed}) {
+    for (const auto& values : *curves) {
+      for (const auto& value : values) highest = std::max(highest, value.value_or(0.0));
+    }
   }
   const double x_end = round_number_above(*std::ranges::max_element(chart.x)), y_end = round_number_above(highest);
   const double left = panel.x + kLabels, bottom = panel.y + kCurveHeadHeight + kPlotHeight;
   axes(panel, left, x_end, y_end, chart.x_title);
+  const auto place_of = [&](double x, double y) -> std::array<double, 2> {
+    return {left + x / x_end * (panel.x + panel.width - left), bottom - y / y_end * kPlotHeight};
+  };
+  for (std::size_t report = 0; report < chart.dashed.size(); ++report) {
+    for (const Points& run : runs_of(chart.x, chart.dashed[report], place_of)) dashes(run, color_of_report(report));
+  }
   for (std::size_t report = 0; report < chart.y.size(); ++report) {
-    std::vector<std::array<double, 2>> run;
-    const auto finish = [&] {
+    for (const Points& run : runs_of(chart.x, chart.y[report], place_of)) {
       if (run.size() > 1) line(run, color_of_report(report), 2.0);
       for (const auto& [x, y] : run) report_box(x - kDot / 2.0, y - kDot / 2.0, kDot, kDot, report);
-      run.clear();
-    };
-    for (std::size_t i = 0; i < chart.x.size(); ++i) {
-      const std::optional<double>& value = chart.y[report][i];
-      if (!value) {
-        finish();
-        continue;
-      }
-      run.push_back(
-          {left + chart.x[i] / x_end * (panel.x + panel.width - left), bottom - *value / y_end * kPlotHeight});
     }
-    finish();
   }
 }
 
 }  // namespace
 
 Drawing draw_charts(const std::vector<std::string>& names, const std::vector<BarChart>& bars,
-                    const std::vector<CurveChart>& curves) {
+                    const std::vector<CurveChart>& curves, const std::string& note) {
   Charts charts(names);
   const Grid bar_grid(charts.legend(kMargin), 3,
                       Charts::kHeadHeight + Charts::kBarHeight * static_cast<double>(names.size()));
@@ -216,8 +270,10 @@ Drawing draw_charts(const std::vector<std::string>& names, const std::vector<Bar
   const Grid curve_grid(bar_grid.bottom(bars.size()), 2,
                         Charts::kCurveHeadHeight + Charts::kPlotHeight + Charts::kAxisHeight);
   for (std::size_t i = 0; i < curves.size(); ++i) charts.curves(curve_grid.panel(i), curves[i]);
+  const double bottom = curve_grid.bottom(curves.size()) - kGap + kMargin;
+  if (!note.empty()) charts.note(bottom, note);
   charts.drawing.width = kWidth;
-  charts.drawing.height = curve_grid.bottom(curves.size()) - kGap + kMargin;
+  charts.drawing.height = bottom + (note.empty() ? 0.0 : kMargin);
   return std::move(charts.drawing);
 }
 

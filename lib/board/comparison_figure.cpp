@@ -19,17 +19,38 @@ std::string title_with_unit(const std::string& title, const ScoreKind& kind) {
   return fmt::format("{} {}{}", title, arrow(kind), unit.empty() ? "" : fmt::format(" [{}]", unit));
 }
 
-std::vector<BarChart> bar_charts(const ComparisonScores& comparison) {
+/// The spread over the grid's phases, else the interval of the report.
+std::optional<Range> range_of(const Json& report, const std::vector<Score>& scores, const ScoreKind& kind) {
+  const Score* score = score_of(scores, kind);
+  if (score != nullptr && score->phases) return Range{score->phases->min, score->phases->max};
+  const Json::json_pointer lower(fmt::format("/intervals/metrics/{}/lower", kind.metric)),
+      upper(fmt::format("/intervals/metrics/{}/upper", kind.metric));
+  if (!kind.part.empty() || !report.contains(lower) || !report.at(lower).is_number()) return std::nullopt;
+  return Range{report.at(lower).get<double>(), report.at(upper).get<double>()};
+}
+
+std::vector<BarChart> bar_charts(const std::vector<SavedReport>& reports, const ComparisonScores& comparison) {
   std::vector<BarChart> charts;
   for (const ScoreKind& kind : comparison.kinds) {
     if (!kind.at.empty()) continue;  // these are curves
     BarChart& chart = charts.emplace_back(BarChart{title_with_unit(kind.title, kind), {}, {}});
-    for (const auto& scores : comparison.scores) {
-      chart.values.push_back(value_of(scores, kind));
+    for (std::size_t i = 0; i < reports.size(); ++i) {
+      chart.values.push_back(value_of(comparison.scores[i], kind));
       chart.texts.push_back(shown_value(kind, chart.values.back()));
+      chart.ranges.push_back(range_of(reports[i].json, comparison.scores[i], kind));
     }
   }
   return charts;
+}
+
+/// What the lines over the bars are, where there are any.
+std::string note_on(const std::vector<BarChart>& charts) {
+  const auto has_range = [](const BarChart& chart) {
+    return std::ranges::any_of(chart.ranges, [](const auto& range) { return range.has_value(); });
+  };
+  return std::ranges::any_of(charts, has_range) ? "Lines over bars: from the least to the greatest over the grid's "
+                                                  "phases, else the report's interval (--bootstrap)"
+                                                : "";
 }
 
 /// Values of a curve in the unit of the tables.
@@ -50,21 +71,32 @@ CurveChart threshold_curve(const ComparisonScores& comparison, std::vector<Score
   return chart;
 }
 
+/// One list of the recall's curve in percent, by report; empty where no report has it.
+CurveChart::Curves recall_curves(const std::vector<SavedReport>& reports, const char* name, std::size_t n) {
+  const Json::json_pointer place(fmt::format("/metrics/local_color_recall/curve/{}", name));
+  CurveChart::Curves curves;
+  bool is_there = false;
+  for (const SavedReport& report : reports) {
+    auto& values = curves.emplace_back(n);
+    if (!report.json.contains(place)) continue;
+    is_there = true;
+    const Json& shares = report.json.at(place);
+    for (std::size_t i = 0; i < std::min(shares.size(), n); ++i) {
+      if (shares[i].is_number()) values[i] = 100.0 * shares[i].get<double>();
+    }
+  }
+  return is_there ? curves : CurveChart::Curves{};
+}
+
 /// Local color recall against tau, where a report has the curve.
 std::optional<CurveChart> recall_curve(const std::vector<SavedReport>& reports) {
-  const Json::json_pointer place("/metrics/local_color_recall/curve");
-  CurveChart chart{"local color recall ↑ [%]", "tau", {}, {}};
-  for (const SavedReport& report : reports) {
-    if (!report.json.contains(place)) continue;
-    if (chart.x.empty()) chart.x = report.json.at(place).at("tau").get<std::vector<double>>();
-  }
-  if (chart.x.empty()) return std::nullopt;
-  for (const SavedReport& report : reports) {
-    auto& values = chart.y.emplace_back(chart.x.size());
-    if (!report.json.contains(place)) continue;
-    const auto shares = report.json.at(place).at("value").get<std::vector<double>>();
-    for (std::size_t i = 0; i < std::min(shares.size(), values.size()); ++i) values[i] = 100.0 * shares[i];
-  }
+  const Json::json_pointer place("/metrics/local_color_recall/curve/tau");
+  const auto first = std::ranges::find_if(reports, [&](const SavedReport& r) { return r.json.contains(place); });
+  if (first == reports.end()) return std::nullopt;
+  CurveChart chart{"local color recall ↑ [%]", "tau", first->json.at(place).get<std::vector<double>>(), {}};
+  chart.y = recall_curves(reports, "value", chart.x.size());
+  chart.dashed = recall_curves(reports, "chance", chart.x.size());
+  if (!chart.dashed.empty()) chart.title += ", dashed: by chance";
   return chart;
 }
 
@@ -99,7 +131,8 @@ void check_figure_name(const std::filesystem::path& name) {
 void write_comparison_figure(const std::vector<SavedReport>& reports, const ComparisonOptions& options,
                              const std::filesystem::path& name, OutputFile& file) {
   const ComparisonScores comparison = scores_to_compare(reports, options);
-  const Drawing drawing = draw_charts(comparison.names, bar_charts(comparison), curve_charts(reports, comparison));
+  const std::vector<BarChart> bars = bar_charts(reports, comparison);
+  const Drawing drawing = draw_charts(comparison.names, bars, curve_charts(reports, comparison), note_on(bars));
   if (is_svg(name)) {
     file.write(svg(drawing));
   } else {

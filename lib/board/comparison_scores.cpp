@@ -6,7 +6,6 @@
 #include "cmap/core/error.hpp"
 #include "cmap/eval/metric_catalog.hpp"
 #include "cmap/report/table_text.hpp"
-#include "score_table.hpp"
 
 namespace cmap {
 namespace {
@@ -36,6 +35,10 @@ ComparisonScores scores_to_compare(const std::vector<SavedReport>& reports, cons
   }
   return comparison;
 }
+
+const std::vector<std::string> kMetricHeads{"metric", "symbol", "", "unit"};
+
+TableRow metric_row(const ScoreKind& kind) { return {{kind.title, kind.symbol, arrow(kind), shown_unit(kind)}, {}}; }
 
 std::string shown_value(const ScoreKind& kind, const std::optional<double>& value) {
   const Json json = value ? Json(*value) : Json(nullptr);

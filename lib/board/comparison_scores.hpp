@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "cmap/board/comparison.hpp"
+#include "score_table.hpp"
 #include "scores.hpp"
 
 namespace cmap {
@@ -17,6 +18,10 @@ struct ComparisonScores {
 
 /// Throws UsageError for an unknown metric, or where none is left.
 ComparisonScores scores_to_compare(const std::vector<SavedReport>& reports, const ComparisonOptions& options);
+
+/// The columns at the left of tables whose rows are scores, and such a row without its cells.
+extern const std::vector<std::string> kMetricHeads;
+TableRow metric_row(const ScoreKind& kind);
 
 /// Shares in percent, others with four digits.
 std::string shown_value(const ScoreKind& kind, const std::optional<double>& value);

@@ -79,6 +79,7 @@ std::string escaped_latex(std::string_view text) {
                                    {"↑", "$\\uparrow$"},
                                    {"Δ", "$\\Delta$"},
                                    {"×", "$\\times$"},
+                                   {"±", "$\\pm$"},
                                    {"∞", "$\\infty$"},
                                    {"[", "{[}"},
                                    {"]", "{]}"},

@@ -39,6 +39,8 @@ const char* look_of(const TableCell& cell) {
       return "value best";
     case Mark::kSecond:
       return "value second";
+    case Mark::kBestUntested:
+      return "value untested";
     case Mark::kBetter:
       return "value better";
     case Mark::kWorse:
@@ -57,7 +59,9 @@ std::string value_cell(const TableCell& cell) {
   std::string attributes = fmt::format("class=\"{}\"", look_of(cell));
   if (cell.value) attributes += fmt::format(" data-value=\"{}\"", number_in_script(*cell.value));
   if (!cell.note.empty()) attributes += fmt::format(" title=\"{}\"", escaped_html(cell.note));
-  return fmt::format("<td {}>{}</td>", attributes, escaped_html(cell.text));
+  const std::string band =
+      cell.band.empty() ? "" : fmt::format(" <span class=\"band\">{}</span>", escaped_html(cell.band));
+  return fmt::format("<td {}>{}{}</td>", attributes, escaped_html(cell.text), band);
 }
 
 }  // namespace
@@ -75,10 +79,10 @@ void HtmlPage::add_paragraph(std::string_view text) {
   body_ += fmt::format("<p class=\"note\">{}</p>\n", escaped_html(text));
 }
 
-void HtmlPage::add_key(std::string_view text) {
+void HtmlPage::add_key(std::string_view text, bool is_plain) {
   body_ += fmt::format(
-      "<p class=\"note key\"><span class=\"best\">best</span><span class=\"second\">second best</span>{}</p>\n",
-      escaped_html(text));
+      "<p class=\"note key\"><span class=\"best\">best</span><span class=\"second\">second best</span>{}{}</p>\n",
+      is_plain ? "" : "<span class=\"untested\">best by value alone, not tested</span>", escaped_html(text));
 }
 
 void HtmlPage::add_table(const ScoreTable& table) {

@@ -15,8 +15,8 @@ class HtmlPage {
 
   void add_heading(std::string_view text, std::string_view id = "");
   void add_paragraph(std::string_view text);
-  /// What the marks look like, and what they are about.
-  void add_key(std::string_view text);
+  /// What the marks look like, and what they are about; all by value alone where `is_plain`.
+  void add_key(std::string_view text, bool is_plain);
   void add_table(const ScoreTable& table);
   /// Markup, as it is.
   void add(std::string_view markup) { body_ += markup; }

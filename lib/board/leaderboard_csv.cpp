@@ -18,17 +18,30 @@ const char* state_name(const LeaderboardPair& pair, const std::optional<double>&
   return value ? "done" : "no value";
 }
 
-const char* rank_name(Mark mark) { return mark == Mark::kBest ? "best" : mark == Mark::kSecond ? "second" : ""; }
+const char* rank_name(Mark mark) {
+  return mark == Mark::kBest           ? "best"
+         : mark == Mark::kSecond       ? "second"
+         : mark == Mark::kBestUntested ? "best untested"
+                                       : "";
+}
+
+/// Floor, chance, and the spread over the grid's phases.
+std::string level_fields(const Score* score) {
+  if (score == nullptr) return ",,";
+  const auto std = score->phases ? std::optional(score->phases->std) : std::nullopt;
+  return fmt::format("{},{},{}", csv_number(score->floor), csv_number(score->chance), csv_number(std));
+}
 
 std::string computed_lines(const ScoreSection& section, const std::vector<LeaderboardPair>& pairs,
-                           std::size_t n_methods) {
+                           const std::vector<std::vector<Score>>& scores, std::size_t n_methods) {
   const ScoreKind& kind = section.kind;
   std::string text;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const TableCell& cell = section.computed.rows[i % n_methods].cells[i / n_methods];
-    text += fmt::format("{},{},{},{},{},{},{},computed,{},{},{}\n", kind.metric, kind.part, csv_digits(kind.at),
+    text += fmt::format("{},{},{},{},{},{},{},computed,{},{},{},{}\n", kind.metric, kind.part, csv_digits(kind.at),
                         csv_field(kind.unit), kind.better, csv_field(pairs[i].sequence), csv_field(pairs[i].method),
-                        state_name(pairs[i], cell.value), csv_number(cell.value), rank_name(cell.mark));
+                        state_name(pairs[i], cell.value), csv_number(cell.value), rank_name(cell.mark),
+                        level_fields(score_of(scores[i], kind)));
   }
   return text;
 }
@@ -42,7 +55,7 @@ std::string published_lines(const PublishedScores& published) {
     const std::string unit = is_distance ? "as printed" : std::string(info.unit) + (is_scatter ? " x 100" : "");
     const auto line = [&](const PublishedScores::Entry& entry, const std::string& in, const char* source,
                           const std::optional<double>& value) {
-      text += fmt::format("{},,{},{},{},{},{},{},{},{},\n", metric.id, info.per_threshold ? kPublishedThreshold : "",
+      text += fmt::format("{},,{},{},{},{},{},{},{},{},,,,\n", metric.id, info.per_threshold ? kPublishedThreshold : "",
                           in, info.better, csv_field(entry.sequence), csv_field(entry.method), source,
                           value ? "done" : "failed", csv_number(value));
     };
@@ -58,10 +71,11 @@ std::string published_lines(const PublishedScores& published) {
 
 }  // namespace
 
-std::string leaderboard_csv(const LeaderboardManifest& manifest, const std::vector<LeaderboardPair>& pairs) {
-  std::string text = "metric,part,at_m,unit,better,sequence,method,source,state,value,rank\n";
-  for (const ScoreSection& section : leaderboard_sections(manifest, pairs)) {
-    text += computed_lines(section, pairs, manifest.methods.size());
+std::string leaderboard_csv(const LeaderboardManifest& manifest, const std::vector<LeaderboardPair>& pairs,
+                            const LeaderboardScores& scores) {
+  std::string text = "metric,part,at_m,unit,better,sequence,method,source,state,value,rank,floor,chance,phase_std\n";
+  for (const ScoreSection& section : scores.sections) {
+    text += computed_lines(section, pairs, scores.scores, manifest.methods.size());
   }
   return manifest.published ? text + published_lines(*manifest.published) : text;
 }

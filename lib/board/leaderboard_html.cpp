@@ -117,20 +117,21 @@ void add_parameters(HtmlPage& page, const EvaluationOptions& options) {
 
 }  // namespace
 
-std::string leaderboard_html(const LeaderboardManifest& manifest, const std::vector<LeaderboardPair>& pairs) {
-  const std::vector<ScoreSection> sections = leaderboard_sections(manifest, pairs);
+std::string leaderboard_html(const LeaderboardManifest& manifest, const std::vector<LeaderboardPair>& pairs,
+                             const LeaderboardScores& scores, const LeaderboardLook& look) {
   HtmlPage page("Leaderboard of maps");
-  page.add_key("of each column; - no value or no map, x failed. Every table sorts by its headings.");
-  add_navigation(page, sections);
-  add_sections(page, sections);
-  if (const std::optional<ScoreTable> registration = registration_table(manifest)) {
+  page.add_key("of each column; - no value or no map, x failed. Every table sorts by its headings.",
+               look.plain_ranking);
+  add_navigation(page, scores.sections);
+  add_sections(page, scores.sections);
+  if (scores.registration) {
     page.add_heading("Registration", "registration");
-    page.add_table(*registration);
+    page.add_table(*scores.registration);
   }
   add_maps(page, manifest, pairs);
   add_gallery(page, pairs);
   page.add_heading("Notes");
-  for (const std::string& note : leaderboard_notes(manifest, pairs)) page.add_paragraph(note);
+  for (const std::string& note : leaderboard_notes(manifest, pairs, scores)) page.add_paragraph(note);
   add_parameters(page, manifest.options);
   return page.finish();
 }

@@ -8,6 +8,7 @@
 #include "cmap/eval/metric_catalog.hpp"
 #include "cmap/report/file_names.hpp"
 #include "cmap/report/table_text.hpp"
+#include "score_notes.hpp"
 
 namespace cmap {
 namespace {
@@ -69,23 +70,15 @@ std::string scaled_digits(const ScoreKind& kind, double value) {
   return scale.unit == "%" ? hundredths(value) : digits(scale.factor * value);
 }
 
-std::string title_of(const ScoreKind& kind) {
-  const char* arrow = kind.better == "lower" ? " ↓" : kind.better == "higher" ? " ↑" : "";
-  const std::string unit = paper_scale(kind).unit;
-  return fmt::format("{}{}{}{}", kind.title, kind.symbol.empty() ? "" : fmt::format(" ({})", kind.symbol), arrow,
-                     unit.empty() ? "" : fmt::format(" [{}]", unit));
-}
-
-std::string table_id(const ScoreKind& kind, const char* of) { return fmt::format("{}-{}", of, kind.id()); }
-
 TableCell cell_of(const LeaderboardPair& pair, const std::vector<Score>& scores, const ScoreKind& kind) {
   if (pair.state == PairState::kMissing)
     return {std::string(kNoValue), {}, Mark::kNone, "missing: " + with_file_names(pair.reason)};
   if (pair.state == PairState::kFailed)
     return {std::string(kFailedMark), {}, Mark::kNone, "failed: " + with_file_names(pair.reason)};
+  const Score* score = score_of(scores, kind);
   const std::optional<double> value = value_of(scores, kind);
-  if (!value) return {std::string(kNoValue), {}, Mark::kNone, "no value"};
-  return {scaled_digits(kind, *value), value, Mark::kNone, fmt::format("{}", *value)};
+  if (!value) return {std::string(kNoValue), {}, Mark::kNone, note_on(score)};
+  return {scaled_digits(kind, *value), value, Mark::kNone, note_on(score), band_of(score, paper_scale(kind).factor)};
 }
 
 /// Rows are methods, columns sequences; pairs and scores are in the runner's order, by sequence.
@@ -100,74 +93,65 @@ ScoreTable computed_table(const ScoreKind& kind, const LeaderboardManifest& mani
       row.cells.push_back(cell_of(pairs[s * n_methods + m], scores[s * n_methods + m], kind));
     }
   }
-  mark_columns(table, kind.better);
   return table;
 }
 
-/// Names in the order in which they come up.
-template <class Name>
-std::vector<std::string> names_in(const std::vector<PublishedScores::Entry>& entries, Name&& name) {
-  std::vector<std::string> names;
-  for (const auto& entry : entries) {
-    if (std::ranges::count(names, entry.*name) == 0) names.push_back(entry.*name);
-  }
-  return names;
-}
-
-/// As printed, in the unit of our tables: six digits are more than any paper prints.
-std::string published_text(const ScoreKind& kind, double value) {
-  const PaperScale scale = paper_scale(kind);
-  return fmt::format("{:.6g}", scale.unit == "%" ? 100.0 * value : value);
-}
-
-/// The cells of one published value: itself and, for color distance, what it is of 255.
-void add_published(TableRow& row, const ScoreKind& kind, const PublishedScores::Entry* entry,
-                   const std::optional<double>& color_scale) {
-  const auto add = [&](auto&& text, double factor) {
-    if (entry == nullptr) {
-      row.cells.push_back({std::string(kNoValue), {}, Mark::kNone, "not published"});
-    } else if (!entry->value) {
-      row.cells.push_back({std::string(kFailedMark), {}, Mark::kNone, "failed, as published"});
-    } else {
-      const double value = factor * *entry->value;
-      row.cells.push_back({text(value), value, Mark::kNone, fmt::format("published {}", *entry->value)});
+/// The maps of each sequence, in the order of methods.
+std::vector<Distinction> distinctions_of(const LeaderboardManifest& manifest, const std::vector<LeaderboardPair>& pairs,
+                                         const std::vector<std::vector<Score>>& scores) {
+  const std::size_t n_methods = manifest.methods.size();
+  std::vector<Distinction> distinctions;
+  for (std::size_t s = 0; s < manifest.sequences.size(); ++s) {
+    std::vector<const Json*> reports;
+    std::vector<const std::vector<Score>*> of_maps;
+    for (std::size_t i = s * n_methods; i < (s + 1) * n_methods; ++i) {
+      reports.push_back(pairs[i].report.is_null() ? nullptr : &pairs[i].report);
+      of_maps.push_back(&scores[i]);
     }
-  };
-  add([&](double value) { return published_text(kind, value); }, 1.0);
-  if (color_scale) add([](double value) { return digits(value); }, 255.0 / *color_scale);
+    distinctions.emplace_back(std::move(reports), std::move(of_maps));
+  }
+  return distinctions;
 }
 
-std::optional<ScoreTable> published_table(const ScoreKind& kind, const PublishedScores& published) {
-  if (!kind.part.empty() || (!kind.at.empty() && kind.at != kPublishedThreshold)) return std::nullopt;
-  const auto metric = std::ranges::find(published.metrics, kind.metric, &PublishedScores::Metric::id);
-  if (metric == published.metrics.end()) return std::nullopt;
-  ScoreTable table{table_id(kind, "published"), title_of(kind) + ", published", {"method"}, {}, {}, {}};
-  const auto sequences = names_in(metric->entries, &PublishedScores::Entry::sequence);
-  const auto scale_of = [&](const std::string& sequence) -> std::optional<double> {
-    const auto scale = published.color_scale.find(sequence);
-    return kind.metric == "color_distance" && scale != published.color_scale.end() ? std::optional(scale->second)
-                                                                                   : std::nullopt;
-  };
-  if (kind.metric == "color_distance") table.title = "color distance (CD) ↓, published";
-  for (const std::string& sequence : sequences) {
-    table.value_columns.push_back(sequence);
-    if (scale_of(sequence)) table.value_columns.push_back("of 255");
+/// Marks the columns of a section by what is distinguishable.
+void rank_columns(ScoreSection& section, std::vector<Distinction>& distinctions) {
+  for (std::size_t column = 0; column < distinctions.size(); ++column) {
+    section.rankings.add(mark_distinguishable(
+        cells_of(section.computed, column), section.kind.better,
+        [&](std::size_t a, std::size_t b) { return distinctions[column].verdict(section.kind, a, b); }));
   }
-  for (const std::string& method : names_in(metric->entries, &PublishedScores::Entry::method)) {
-    TableRow& row = table.rows.emplace_back(TableRow{{method}, {}});
-    for (const std::string& sequence : sequences) {
-      const auto entry = std::ranges::find_if(
-          metric->entries, [&](const auto& e) { return e.sequence == sequence && e.method == method; });
-      add_published(row, kind, entry == metric->entries.end() ? nullptr : &*entry, scale_of(sequence));
-    }
+}
+
+void mark_columns(ScoreTable& table, std::string_view better) {
+  for (std::size_t column = 0; column < table.value_columns.size(); ++column)
+    mark_best(cells_of(table, column), better);
+}
+
+std::vector<ScoreSection> sections_of(const std::vector<ScoreKind>& kinds, const LeaderboardManifest& manifest,
+                                      const std::vector<LeaderboardPair>& pairs,
+                                      const std::vector<std::vector<Score>>& scores, bool is_plain) {
+  std::vector<ScoreSection> sections;
+  for (const ScoreKind& kind : kinds) {
+    ScoreSection& section =
+        sections.emplace_back(ScoreSection{kind, computed_table(kind, manifest, pairs, scores), {}, {}});
+    if (manifest.published) section.published = published_table(kind, *manifest.published, is_plain);
   }
-  mark_columns(table, kind.better);
-  return table;
+  return sections;
 }
 
 }  // namespace
 
+std::string title_of(const ScoreKind& kind) {
+  const char* arrow = kind.better == "lower" ? " ↓" : kind.better == "higher" ? " ↑" : "";
+  const std::string unit = paper_scale(kind).unit;
+  return fmt::format("{}{}{}{}", kind.title, kind.symbol.empty() ? "" : fmt::format(" ({})", kind.symbol), arrow,
+                     unit.empty() ? "" : fmt::format(" [{}]", unit));
+}
+
+std::string table_id(const ScoreKind& kind, const char* of) { return fmt::format("{}-{}", of, kind.id()); }
+
 PaperScale paper_scale(const ScoreKind& kind) {
+  if (kind.part == "skill") return {};
   const MetricInfo* info = find_metric(kind.metric);
   if (info != nullptr && !info->paper_unit.empty()) return {info->paper_factor, std::string(info->paper_unit)};
   return {1.0, kind.unit == "1" ? "" : kind.unit};
@@ -179,51 +163,44 @@ std::string heading_of(const ScoreKind& kind) {
   return kind.symbol.empty() || kind.symbol == title ? title : fmt::format("{} ({})", title, kind.symbol);
 }
 
-std::vector<ScoreSection> leaderboard_sections(const LeaderboardManifest& manifest,
-                                               const std::vector<LeaderboardPair>& pairs) {
-  std::vector<std::vector<Score>> scores;
+LeaderboardScores leaderboard_scores(const LeaderboardManifest& manifest, const std::vector<LeaderboardPair>& pairs,
+                                     const LeaderboardLook& look) {
+  LeaderboardScores scores;
   for (const LeaderboardPair& pair : pairs) {
-    scores.push_back(pair.report.is_null() ? std::vector<Score>{} : scores_of(pair.report));
+    scores.scores.push_back(pair.report.is_null() ? std::vector<Score>{} : scores_of(pair.report));
   }
-  std::vector<std::vector<Score>> all = scores;
+  std::vector<std::vector<Score>> all = scores.scores;
   all.insert(all.begin(), asked_for(manifest.options));
   all.push_back(published_scores(manifest));
-  std::vector<ScoreSection> sections;
-  for (const ScoreKind& kind : kinds_of(all)) {
-    sections.push_back({kind, computed_table(kind, manifest, pairs, scores), {}});
-    if (manifest.published) sections.back().published = published_table(kind, *manifest.published);
-  }
-  return sections;
-}
-
-std::optional<ScoreTable> registration_table(const LeaderboardManifest& manifest) {
-  if (!manifest.published || manifest.published->registration.empty()) return std::nullopt;
-  const std::vector<std::pair<const char*, const char*>> columns{
-      {"rmse", "RMSE [m]"}, {"average_wasserstein", "AWD [m]"}, {"chamfer", "CD# [m]"}, {"spatial_consistency", "SCS"}};
-  ScoreTable table{
-      "published-registration", "registration, published: lower is better", {"sequence", "variant"}, {}, {}, {}};
-  for (const auto& [id, heading] : columns) table.value_columns.emplace_back(heading);
-  for (const PublishedScores::Registration& entry : manifest.published->registration) {
-    TableRow& row = table.rows.emplace_back(TableRow{{entry.sequence, entry.variant}, {}});
-    for (const auto& [id, heading] : columns) {
-      const auto value = entry.values.find(id);
-      const bool is_there = value != entry.values.end() && value->second;
-      row.cells.push_back(is_there ? TableCell{fmt::format("{:.6g}", *value->second), value->second, Mark::kNone, ""}
-                                   : TableCell{std::string(kNoValue), {}, Mark::kNone, "not published"});
+  scores.sections = sections_of(kinds_of(all), manifest, pairs, scores.scores, look.plain_ranking);
+  scores.registration = registration_table(manifest, look.plain_ranking);
+  std::vector<Distinction> distinctions = distinctions_of(manifest, pairs, scores.scores);
+  for (ScoreSection& section : scores.sections) {
+    if (look.plain_ranking) {
+      mark_columns(section.computed, section.kind.better);
+    } else {
+      rank_columns(section, distinctions);
     }
   }
-  // The variants of one sequence compare with each other.
-  for (std::size_t column = 0; column < columns.size(); ++column) {
-    std::map<std::string, std::vector<TableCell*>> by_sequence;
-    for (TableRow& row : table.rows) by_sequence[row.heads.front()].push_back(&row.cells[column]);
-    for (const auto& [sequence, cells] : by_sequence) mark_best(cells, "lower");
+  for (const Distinction& distinction : distinctions) scores.evidence.add(distinction.evidence());
+  for (ScoreSection& section : scores.sections) {
+    const std::string note = section.rankings.text(scores.evidence.how());
+    if (!note.empty()) section.computed.notes = {note};
   }
-  return table;
+  return scores;
 }
 
 std::vector<std::string> leaderboard_notes(const LeaderboardManifest& manifest,
-                                           const std::vector<LeaderboardPair>& pairs) {
-  std::vector<std::string> notes;
+                                           const std::vector<LeaderboardPair>& pairs, const LeaderboardScores& scores) {
+  RankingCounts rankings;
+  std::vector<ScoreKind> kinds;
+  for (const ScoreSection& section : scores.sections) {
+    rankings.add(section.rankings);
+    kinds.push_back(section.kind);
+  }
+  std::vector<std::string> notes = ranking_notes(rankings, scores.evidence), names;
+  for (const LeaderboardPair& pair : pairs) names.push_back(fmt::format("{} / {}", pair.sequence, pair.method));
+  for (std::string& note : missing_notes(names, scores.scores, kinds)) notes.push_back(std::move(note));
   for (const LeaderboardPair& pair : pairs) {
     if (pair.state == PairState::kDone) continue;
     notes.push_back(fmt::format("{} {} / {}: {}", pair.state == PairState::kFailed ? kFailedMark : kNoValue,

@@ -1,30 +1,48 @@
 #include <algorithm>
-#include <iterator>
 
 #include "score_table.hpp"
 
 namespace cmap {
 
-void mark_best(const std::vector<TableCell*>& cells, std::string_view better) {
-  if (better != "lower" && better != "higher") return;
-  std::vector<TableCell*> ranked;  // the best first
-  std::ranges::copy_if(cells, std::back_inserter(ranked),
-                       [](const TableCell* cell) { return cell->value.has_value(); });
-  if (ranked.size() < 2) return;
+std::vector<std::size_t> ranked_cells(const std::vector<TableCell*>& cells, std::string_view better) {
+  std::vector<std::size_t> ranked;
+  if (better != "lower" && better != "higher") return ranked;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (cells[i]->value) ranked.push_back(i);
+  }
   const double sign = better == "lower" ? 1.0 : -1.0;
-  std::ranges::stable_sort(ranked, {}, [&](const TableCell* cell) { return sign * *cell->value; });
+  std::ranges::stable_sort(ranked, {}, [&](std::size_t i) { return sign * *cells[i]->value; });
+  return ranked;
+}
+
+void mark_best(const std::vector<TableCell*>& cells, std::string_view better) {
+  const std::vector<std::size_t> ranked = ranked_cells(cells, better);
+  if (ranked.size() < 2) return;
   std::size_t n_better = 0;  // different texts before this one
   for (std::size_t i = 0; i < ranked.size(); ++i) {
-    if (i > 0 && ranked[i]->text != ranked[i - 1]->text) ++n_better;
-    ranked[i]->mark = n_better == 0 ? Mark::kBest : n_better == 1 ? Mark::kSecond : Mark::kNone;
+    TableCell& cell = *cells[ranked[i]];
+    if (i > 0 && cell.text != cells[ranked[i - 1]]->text) ++n_better;
+    cell.mark = n_better == 0 ? Mark::kBest : n_better == 1 ? Mark::kSecond : Mark::kNone;
   }
 }
 
-void mark_columns(ScoreTable& table, std::string_view better) {
-  for (std::size_t column = 0; column < table.value_columns.size(); ++column) {
-    std::vector<TableCell*> cells;
-    for (TableRow& row : table.rows) cells.push_back(&row.cells[column]);
-    mark_best(cells, better);
+std::vector<TableCell*> cells_of(TableRow& row) {
+  std::vector<TableCell*> cells;
+  for (TableCell& cell : row.cells) cells.push_back(&cell);
+  return cells;
+}
+
+std::vector<TableCell*> cells_of(ScoreTable& table, std::size_t column) {
+  std::vector<TableCell*> cells;
+  for (TableRow& row : table.rows) cells.push_back(&row.cells[column]);
+  return cells;
+}
+
+void remove_bands(std::vector<ScoreTable>& tables) {
+  for (ScoreTable& table : tables) {
+    for (TableRow& row : table.rows) {
+      for (TableCell& cell : row.cells) cell.band.clear();
+    }
   }
 }
 

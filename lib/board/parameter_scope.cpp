@@ -22,6 +22,8 @@ const std::map<std::string, Ids>& scopes() {
       {"awd-voxel", kGaussians},
       {"awd-min-points", kGaussians},
       {"scs-radius", {"spatial_consistency"}},
+      {"cw-voxel", {"color_wasserstein"}},
+      {"cw-min-points", {"color_wasserstein"}},
       {"mme-radius", {"mean_map_entropy"}},
       {"mme-min-neighbors", {"mean_map_entropy"}},
       {"color-max-distance", {"color_distance", "color_fidelity", "color_distance_exposure_free"}}};

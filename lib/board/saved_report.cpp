@@ -64,16 +64,32 @@ class Place {
   std::string source_, path_;
 };
 
+void check_levels(const Place& record) {
+  for (const char* level : {"floor", "chance", "skill"}) {
+    if (record.has(level)) record[level]["value"].be_number_or_null();
+  }
+  if (record.has("skill") && record["skill"].has("reason")) record["skill"]["reason"].be_text();
+}
+
+void check_phases(const Place& phases) {
+  phases["n"].be_count();
+  for (const char* number : {"mean", "std", "min", "max"}) phases[number].be_number_or_null();
+  for (const Place& value : phases["values"].entries()) value.be_number_or_null();
+}
+
 void check_record(const Place& record) {
   record["unit"].be_text();
   record["symbol"].be_text();
   record["better"].be_text_or_null();
   record["parameters"].be_object();
   if (record.has("coverage")) record["coverage"].be_number_or_null();
+  check_levels(record);
+  if (record.has("phases")) check_phases(record["phases"]);
   if (record.has("per_threshold")) {
     for (const Place& entry : record["per_threshold"].entries()) {
       entry["threshold_m"].be_number();
       entry["value"].be_number_or_null();
+      check_levels(entry);
     }
   } else if (record.has("per_range")) {
     for (const Place& bin : record["per_range"].entries()) {
@@ -95,6 +111,8 @@ void check_curve(const Place& curve) {
   for (const char* axis : {"tau", "value"}) {
     for (const Place& number : curve[axis].entries()) number.be_number();
   }
+  if (!curve.has("chance")) return;
+  for (const Place& number : curve["chance"].entries()) number.be_number_or_null();
 }
 
 /// The last `n` parts of a path, without the extension of the file.

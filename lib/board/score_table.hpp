@@ -8,8 +8,9 @@
 namespace cmap {
 
 /// Best and second best among the values that are compared with each other; values that look the same share their
-/// mark. Better and worse are differences, whose sign says the same.
-enum class Mark { kNone, kBest, kSecond, kBetter, kWorse };
+/// mark. The best that nobody tested is one by its value alone. Better and worse are differences, whose sign says the
+/// same.
+enum class Mark { kNone, kBest, kSecond, kBestUntested, kBetter, kWorse };
 
 /// Where a table has no number.
 inline constexpr std::string_view kNoValue = "-", kFailedMark = "x";
@@ -18,7 +19,8 @@ struct TableCell {
   std::string text;
   std::optional<double> value;  ///< what the text shows, for sorting
   Mark mark = Mark::kNone;
-  std::string note;  ///< for people who ask: why there is no value, all digits
+  std::string note;       ///< for people who ask: why there is no value, all digits
+  std::string band = {};  ///< behind the value: "± 0.097"
 };
 
 struct TableRow {
@@ -35,16 +37,29 @@ struct ScoreTable {
   std::vector<std::string> notes;  ///< below the table
 };
 
-/// Marks the cells that have a value. `better` is "lower" or "higher", all else marks nothing, as does a lone value.
+/// Indices of the cells that have a value, the best first. None where `better` is neither "lower" nor "higher".
+std::vector<std::size_t> ranked_cells(const std::vector<TableCell*>& cells, std::string_view better);
+
+/// Marks the cells that have a value, by it alone. `better` is "lower" or "higher", all else marks nothing, as does a
+/// lone value.
 void mark_best(const std::vector<TableCell*>& cells, std::string_view better);
 
-/// Marks within each column of the table.
-void mark_columns(ScoreTable& table, std::string_view better);
+/// The cells of a row or column that are ranked against each other.
+std::vector<TableCell*> cells_of(TableRow& row);
+std::vector<TableCell*> cells_of(ScoreTable& table, std::size_t column);
+
+/// Takes the bands from all cells.
+void remove_bands(std::vector<ScoreTable>& tables);
 
 /// Text of one line for any terminal or page: control characters become blanks, bytes that are no UTF-8 become U+FFFD.
 std::string one_line(std::string_view text);
 
 enum class TableFormat { kText, kMarkdown, kLatex };
+
+/// What the marks of the format mean. Best and second best stand by value alone where `is_plain`.
+std::string marks_note(TableFormat format, bool is_plain);
+/// "- no value".
+std::string missing_note(TableFormat format);
 
 /// The tables one after the other. Notes that tables share stand once, at the end.
 std::string typeset(const std::vector<ScoreTable>& tables, TableFormat format);

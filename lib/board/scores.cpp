@@ -29,13 +29,51 @@ ScoreKind kind_of(const std::string& id, const Json& record) {
   return kind;
 }
 
+/// The value of a level, where the record has that level.
+std::optional<double> level(const Json& record, const char* name) {
+  return record.contains(name) ? number(record.at(name).at("value")) : std::nullopt;
+}
+
+std::optional<Phases> phases_of(const Json& record) {
+  if (!record.contains("phases")) return std::nullopt;
+  const Json& json = record.at("phases");
+  const auto std = number(json.at("std")), min = number(json.at("min")), max = number(json.at("max"));
+  Phases phases;
+  for (const Json& value : json.at("values")) phases.values.push_back(number(value));
+  const auto n = std::ranges::count_if(phases.values, [](const auto& value) { return value.has_value(); });
+  constexpr std::ptrdiff_t kLeast = 2;  // of one there is no spread
+  if (n < kLeast || !std || !min || !max) return std::nullopt;
+  phases.std = *std;
+  phases.min = *min;
+  phases.max = *max;
+  return phases;
+}
+
+/// A score's skill is one of its own: higher is better whatever the metric's direction.
+Score skill_of(ScoreKind kind, const Json& skill) {
+  kind.part = "skill";
+  kind.title = fmt::format("skill of {}", kind.title);
+  kind.symbol.clear();
+  kind.unit = "1";
+  kind.better = "higher";
+  kind.share = false;
+  return {kind, number(skill.at("value")), {}, {}, {}, skill.value("reason", "")};
+}
+
+Score coverage_of(ScoreKind kind, const Json& coverage) {
+  kind.part = "coverage";
+  kind.title = "coverage (recall of any color)";
+  kind.symbol.clear();
+  return {kind, number(coverage)};
+}
+
 void add_per_threshold(std::vector<Score>& scores, const ScoreKind& metric, const Json& entries) {
   for (const Json& entry : entries) {
     ScoreKind kind = metric;
     kind.at = fmt::format("{}", entry.at("threshold_m").get<double>());
     kind.title += fmt::format(" <= {} m", kind.at);
     kind.headline = &entry == &entries.front();
-    scores.push_back({kind, number(entry.at("value"))});
+    scores.push_back({kind, number(entry.at("value")), level(entry, "floor")});
   }
 }
 
@@ -72,13 +110,11 @@ std::vector<Score> scores_of(const Json& report) {
       add_per_range(scores, kind, record.at("per_range"));
     } else {
       kind.headline = true;
-      scores.push_back({kind, is_infinite(report, id) ? INFINITY : number(record.at("value"))});
+      scores.push_back({kind, is_infinite(report, id) ? INFINITY : number(record.at("value")), level(record, "floor"),
+                        level(record, "chance"), phases_of(record)});
     }
-    if (!record.contains("coverage")) continue;
-    kind.part = "coverage";
-    kind.title = "coverage (recall of any color)";
-    kind.symbol.clear();
-    scores.push_back({kind, number(record.at("coverage"))});
+    if (record.contains("skill")) scores.push_back(skill_of(kind, record.at("skill")));
+    if (record.contains("coverage")) scores.push_back(coverage_of(kind, record.at("coverage")));
   }
   return scores;
 }
@@ -95,9 +131,14 @@ std::vector<ScoreKind> kinds_of(const std::vector<std::vector<Score>>& reports) 
   return kinds;
 }
 
-std::optional<double> value_of(const std::vector<Score>& scores, const ScoreKind& kind) {
+const Score* score_of(const std::vector<Score>& scores, const ScoreKind& kind) {
   const auto score = std::ranges::find_if(scores, [&](const Score& s) { return is_same(s.kind, kind); });
-  return score == scores.end() ? std::nullopt : score->value;
+  return score == scores.end() ? nullptr : &*score;
+}
+
+std::optional<double> value_of(const std::vector<Score>& scores, const ScoreKind& kind) {
+  const Score* score = score_of(scores, kind);
+  return score == nullptr ? std::nullopt : score->value;
 }
 
 }  // namespace cmap

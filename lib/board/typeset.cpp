@@ -52,9 +52,29 @@ std::string aligned(const Lines& lines, std::size_t n_heads) {
   return text;
 }
 
+/// Behind a value where there are neither fonts nor colors.
+char sign_of(Mark mark) {
+  switch (mark) {
+    case Mark::kBest:
+      return '*';
+    case Mark::kSecond:
+      return '+';
+    case Mark::kBestUntested:
+      return '?';
+    default:
+      return ' ';
+  }
+}
+
+/// The cell's band behind its value, if it has one.
+std::string with_band(const std::string& value, const TableCell& cell, const std::string& band) {
+  return cell.band.empty() ? value : value + " " + band;
+}
+
 std::string text_table(const ScoreTable& table) {
   Lines lines = lines_of(table, one_line, [](const TableCell& cell) {
-    return cell.text + (cell.mark == Mark::kBest ? "*" : cell.mark == Mark::kSecond ? "+" : " ");
+    const std::string value = cell.text + sign_of(cell.mark);
+    return cell.band.empty() ? value : with_band(value, cell, cell.band) + " ";  // as wide as other marks
   });
   for (std::size_t i = table.head_columns.size(); i < lines.front().size(); ++i) lines.front()[i] += " ";
   return (table.title.empty() ? "" : one_line(table.title) + "\n") + aligned(lines, table.head_columns.size());
@@ -63,7 +83,11 @@ std::string text_table(const ScoreTable& table) {
 std::string markdown_table(const ScoreTable& table) {
   Lines lines = lines_of(table, escaped_markdown, [](const TableCell& cell) {
     const std::string text = escaped_markdown(cell.text);
-    return cell.mark == Mark::kBest ? "**" + text + "**" : cell.mark == Mark::kSecond ? "*" + text + "*" : text;
+    const std::string marked = cell.mark == Mark::kBest           ? "**" + text + "**"
+                               : cell.mark == Mark::kSecond       ? "*" + text + "*"
+                               : cell.mark == Mark::kBestUntested ? text + "?"
+                                                                  : text;
+    return with_band(marked, cell, escaped_markdown(cell.band));
   });
   std::vector<std::string> rule;
   for (std::size_t i = 0; i < lines.front().size(); ++i)
@@ -88,10 +112,11 @@ std::string latex_number(const std::string& text) {
 std::string latex_cell(const TableCell& cell) {
   if (cell.text == kNoValue) return "--";
   if (cell.text == kFailedMark) return "$\\times$";
-  const char* color = cell.mark == Mark::kBest     ? "\\cellcolor{red!35}"
-                      : cell.mark == Mark::kSecond ? "\\cellcolor{orange!35}"
-                                                   : "";
-  return color + latex_number(escaped_latex(cell.text));
+  const char* color = cell.mark == Mark::kBest           ? "\\cellcolor{red!35}"
+                      : cell.mark == Mark::kSecond       ? "\\cellcolor{orange!35}"
+                      : cell.mark == Mark::kBestUntested ? "\\cellcolor{gray!25}"
+                                                         : "";
+  return with_band(color + latex_number(escaped_latex(cell.text)), cell, latex_number(escaped_latex(cell.band)));
 }
 
 std::string latex_row(const std::vector<std::string>& cells) {
@@ -129,6 +154,23 @@ std::vector<std::string> notes_of(const std::vector<ScoreTable>& tables) {
 }
 
 }  // namespace
+
+std::string marks_note(TableFormat format, bool is_plain) {
+  const bool has_signs = format != TableFormat::kLatex;
+  const std::string untested =
+      is_plain ? "" : fmt::format(", {} best by value alone, not tested", has_signs ? "?" : "gray");
+  switch (format) {
+    case TableFormat::kText:
+      return "* best, + second best" + untested;
+    case TableFormat::kMarkdown:
+      return "bold best, italic second best" + untested;
+    case TableFormat::kLatex:
+      break;
+  }
+  return "red best, orange second best" + untested;
+}
+
+std::string missing_note(TableFormat format) { return format == TableFormat::kLatex ? "-- no value" : "- no value"; }
 
 std::string typeset(const std::vector<ScoreTable>& tables, TableFormat format) {
   std::string text =

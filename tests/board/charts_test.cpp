@@ -54,6 +54,42 @@ TEST(Charts, AnInfiniteBarIsTheLongest) {
   EXPECT_GT(alone[0].width, 0.0);
 }
 
+/// Where the lines of that width go.
+std::vector<Drawing::Line> lines_of(const Drawing& drawing, double width) {
+  std::vector<Drawing::Line> lines = shapes_of<Drawing::Line>(drawing);
+  std::erase_if(lines, [&](const Drawing::Line& line) { return line.width != width; });
+  return lines;
+}
+
+TEST(Charts, ARangeLiesOverItsBar) {
+  const Drawing drawing = draw_charts({"a", "b"}, {{"t", {2.0, 1.0}, {"2", "1"}, {Range{1.0, 4.0}, {}}}}, {}, "a note");
+  const auto bars = bars_of(drawing, 2);
+  const auto lines = lines_of(drawing, 1.4);
+  ASSERT_EQ(lines.size(), 3u) << "with a cap at each end";
+  const double zero = bars[0].x, unit = bars[0].width / 2.0;
+  EXPECT_NEAR(lines[0].points[0][0], zero + unit, 1e-9);
+  EXPECT_NEAR(lines[0].points[1][0], zero + 4.0 * unit, 1e-9);
+  EXPECT_LE(zero + 4.0 * unit, drawing.width);
+  for (const Drawing::Text& text : shapes_of<Drawing::Text>(drawing)) {
+    if (text.text != "2") continue;
+    EXPECT_GT(text.x, zero + 4.0 * unit) << "behind the range";
+  }
+  EXPECT_THAT(texts_of(drawing), Contains("a note"));
+}
+
+TEST(Charts, DashesFollowTheirCurve) {
+  const CurveChart curve{"t", "x", {0.0, 1.0}, {{0.0, 1.0}}, {{0.5, 0.5}}};
+  const auto dashes = lines_of(draw_charts({"a"}, {}, {curve}), 1.6);
+  ASSERT_GT(dashes.size(), 10u);
+  double drawn = 0.0;
+  for (const Drawing::Line& dash : dashes) {
+    EXPECT_EQ(dash.points[0][1], dash.points[1][1]) << "level";
+    drawn += dash.points[1][0] - dash.points[0][0];
+  }
+  const double whole = dashes.back().points[1][0] - dashes.front().points[0][0];
+  EXPECT_NEAR(drawn / whole, 0.6, 0.02) << "6 pixels of 10";
+}
+
 TEST(Charts, AMissingValueInterruptsItsCurve) {
   const CurveChart curve{"t", "x", {0.1, 0.2, 0.3, 0.4, 0.5}, {{1.0, 2.0, {}, 4.0, 5.0}}};
   int lines_of_report = 0;

@@ -11,13 +11,14 @@ using test::painted_sheet;
 using test::refusal_of;
 using test::report_of;
 using test::small_map;
+using test::without_levels;
 using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using Json = nlohmann::ordered_json;
 
 Json some_report() {
-  static const Json report = report_of(painted_sheet(400, 1), painted_sheet(300, 2));
+  static const Json report = without_levels(report_of(painted_sheet(400, 1), painted_sheet(300, 2)));
   return report;
 }
 
@@ -178,6 +179,7 @@ TEST(OneMap, ComparesWithItsLike) {
   require_comparable({a, b});
   const std::string table = format_comparison({a, b}, {}, ComparisonFormat::kText);
   EXPECT_THAT(table, ContainsRegex("color consistency +CCS +↓ +unit RGB\\^2 +[0-9.]+. +[0-9.]+."));
+  EXPECT_THAT(table, HasSubstr("not tested (no interval of the difference)")) << "no --bootstrap would help";
   EXPECT_THAT(table, ContainsRegex("point spacing +m +[0-9.]+ +[0-9.]+\n")) << "neither is better";
   EXPECT_THAT(table, Not(HasSubstr("SHA-256")));
   EXPECT_EQ(refusal_of<UsageError>([&] {
@@ -273,7 +275,7 @@ std::string compared(const ComparisonOptions& options, ComparisonFormat format =
 }
 
 TEST(FormatComparison, MarksBestAndSecondBestOfEachRow) {
-  const std::string table = compared({{"chamfer", "overlap"}, {}});
+  const std::string table = compared({{"chamfer", "overlap"}, {}, true});
   EXPECT_THAT(table, ContainsRegex("Chamfer distance +CD# +↓ +m +2.000\\+ +1.000\\* +-\n"));
   EXPECT_THAT(table, ContainsRegex("overlap +Overlap +↑ +% +50.00\\* +50.00\\* +25.00\\+\n"));
   EXPECT_THAT(table, HasSubstr("* best, + second best; - no value"));
@@ -299,9 +301,128 @@ TEST(FormatComparison, DifferencesSayWhatIsBetter) {
 TEST(FormatComparison, CsvHasAllDigitsAndNoZeros) {
   EXPECT_EQ(compared({{"chamfer", "overlap"}, 0}, ComparisonFormat::kCsv),
             "metric,part,at_m,unit,better,a,b,c,b: better by,\"b: better by, relative\",c: better by,\"c: better by, "
-            "relative\"\n"
-            "chamfer,,,m,lower,2,1,,1,0.5,,\n"
-            "overlap,,,1,higher,0.5,0.5,0.25,0,0,-0.25,-0.5\n");
+            "relative\",ranking\n"
+            "chamfer,,,m,lower,2,1,,1,0.5,,,not tested\n"
+            "overlap,,,1,higher,0.5,0.5,0.25,0,0,-0.25,-0.5,not tested\n");
+  EXPECT_EQ(compared({{"chamfer"}, {}, true}, ComparisonFormat::kCsv),
+            "metric,part,at_m,unit,better,a,b,c\n"
+            "chamfer,,,m,lower,2,1,\n");
+}
+
+TEST(FormatComparison, WhatNobodyTestedIsMarkedSo) {
+  const std::string table = compared({{"chamfer", "overlap"}, {}});
+  EXPECT_THAT(table, ContainsRegex("Chamfer distance +CD# +↓ +m +2.000 +1.000\\? +-\n"));
+  EXPECT_THAT(table, ContainsRegex("overlap +Overlap +↑ +% +50.00\\? +50.00\\? +25.00\n"));
+  EXPECT_THAT(table, HasSubstr("* best, + second best, ? best by value alone, not tested; - no value\n"
+                               "0 of 2 rankings distinguishable, 2 not tested (no --bootstrap)\n"));
+  EXPECT_THAT(compared({{"chamfer"}, {}}, ComparisonFormat::kMarkdown), HasSubstr("| 2.000 | 1.000? | - |"));
+  const std::string latex = compared({{"chamfer"}, {}}, ComparisonFormat::kLatex);
+  EXPECT_THAT(latex, HasSubstr("2.000 & \\cellcolor{gray!25}1.000 & --"));
+  EXPECT_THAT(latex, HasSubstr("gray best by value alone, not tested"));
+  const std::string page = compared({{"chamfer"}, {}}, ComparisonFormat::kHtml);
+  EXPECT_THAT(page, HasSubstr("class=\"value untested\" data-value=\"1\""));
+  EXPECT_THAT(page, HasSubstr("<span class=\"untested\">best by value alone, not tested</span>"));
+  EXPECT_THAT(compared({{"chamfer"}, {}, true}, ComparisonFormat::kHtml), Not(HasSubstr("not tested")));
+}
+
+/// What a record of a color distance holds besides: worth 0.75 of the way from chance to the floor.
+void add_levels(Json& record, double skill) {
+  record["floor"] = {{"value", 0.0625}, {"se", 0.001}, {"n", 300}};
+  record["chance"] = {{"value", 0.5}, {"se", 0.001}, {"n", 300}};
+  record["skill"] = {{"value", skill}, {"se", 0.002}};
+}
+
+void add_phases(Json& record, const std::vector<double>& values, double std) {
+  record["phases"] = {{"n", values.size()}, {"mean", 0.3}, {"std", std},
+                      {"min", 0.2},         {"max", 0.4},  {"values", values}};
+}
+
+/// Two reports with skills; AWD of the second is worse by the world's grid and better by another.
+std::vector<SavedReport> reports_with_levels() {
+  std::vector<SavedReport> reports = three_reports();
+  reports.pop_back();
+  for (std::size_t i = 0; i < 2; ++i) {
+    Json& metrics = reports[i].json["metrics"];
+    add_levels(metrics["color_distance"], i == 0 ? 0.75 : 0.5);
+    metrics["average_wasserstein"]["value"] = i == 0 ? 0.25 : 0.3125;
+    add_phases(metrics["average_wasserstein"], i == 0 ? std::vector{0.25, 0.375} : std::vector{0.3125, 0.3125},
+               0.09712);
+    check_report(reports[i].json, "r.json");
+  }
+  return reports;
+}
+
+TEST(FormatComparison, SkillHasARowOfItsOwn) {
+  std::vector<SavedReport> reports = reports_with_levels();
+  const std::string table = format_comparison(reports, {{"color"}, {}}, ComparisonFormat::kText);
+  EXPECT_THAT(table, ContainsRegex("color distance +CD +↓ [^\n]*\nskill of color distance +↑ +0.7500\\? +0.5000\n"));
+  Json& skill = reports[1].json["metrics"]["color_distance"]["skill"];
+  skill = {{"value", nullptr}, {"reason", "the floor is no better than chance"}};
+  const std::string without = format_comparison(reports, {{"CD"}, 0}, ComparisonFormat::kText);
+  EXPECT_THAT(without, ContainsRegex("skill of color distance +↑ +0.7500 +-\n"));
+  EXPECT_THAT(without, HasSubstr("no skill of color distance: the floor is no better than chance (b)\n"));
+  reports[1].json["metrics"]["color_distance"].erase("skill");
+  EXPECT_THAT(format_comparison(reports, {{"CD"}, {}}, ComparisonFormat::kText),
+              ContainsRegex("skill of color distance +↑ +0.7500 +-\n"))
+      << "an older report";
+}
+
+TEST(FormatComparison, BandsStandBehindTheirValues) {
+  const std::vector<SavedReport> reports = reports_with_levels();
+  const auto as = [&](ComparisonFormat format, bool bands = false) {
+    return format_comparison(reports, {{"AWD"}, {}, false, bands}, format);
+  };
+  EXPECT_THAT(as(ComparisonFormat::kText), ContainsRegex("AWD +↓ +m +0.2500\\* ± 0.097 +0.3125\\* ± 0.097\n"));
+  EXPECT_THAT(as(ComparisonFormat::kMarkdown), HasSubstr("| **0.2500** ± 0.097 | **0.3125** ± 0.097 |"));
+  EXPECT_THAT(as(ComparisonFormat::kHtml), HasSubstr("0.2500 <span class=\"band\">± 0.097</span>"));
+  EXPECT_THAT(as(ComparisonFormat::kLatex), Not(HasSubstr("pm")));
+  EXPECT_THAT(as(ComparisonFormat::kLatex, true), HasSubstr("\\cellcolor{red!35}0.2500 $\\pm$ 0.097 &"));
+}
+
+TEST(FormatComparison, WhatIsNotDistinguishableSharesItsMark) {
+  std::vector<SavedReport> reports = reports_with_levels();
+  EXPECT_THAT(format_comparison(reports, {{"AWD"}, {}}, ComparisonFormat::kText),
+              HasSubstr("0 of 1 ranking distinguishable over the grid's phases, 1 not\n"));
+  add_phases(reports[1].json["metrics"]["average_wasserstein"], {0.3125, 0.4375}, 0.09712);
+  const std::string table = format_comparison(reports, {{"AWD", "CD"}, {}}, ComparisonFormat::kText);
+  EXPECT_THAT(table, ContainsRegex("AWD +↓ +m +0.2500\\* ± 0.097 +0.3125\\+ ± 0.097\n"));
+  EXPECT_THAT(
+      table,
+      HasSubstr("1 of 3 rankings distinguishable over the grid's phases, 1 not, 1 not tested (no --bootstrap)\n"))
+      << "the color distances are the same, skill has no test";
+}
+
+TEST(FormatComparison, CsvHasLevels) {
+  const std::string text = format_comparison(reports_with_levels(), {{"CD", "AWD"}, 0}, ComparisonFormat::kCsv);
+  EXPECT_THAT(text, HasSubstr("color_distance,floor,,unit RGB,,0.0625,0.0625,,,\n"
+                              "color_distance,chance,,unit RGB,,0.5,0.5,,,\n"
+                              "color_distance,skill,,1,higher,0.75,0.5,-0.25,-0.3333333333333333,not tested\n"));
+  EXPECT_THAT(text, HasSubstr("average_wasserstein,phase_std,,m,,0.09712,0.09712,,,\n"));
+}
+
+TEST(CheckReport, OfLevels) {
+  const auto refusal = [](const char* id, auto&& change) {
+    std::vector<SavedReport> reports = reports_with_levels();
+    change(reports[0].json["metrics"][id]);
+    return refusal_of<InputError>([&] { check_report(reports[0].json, "r.json"); });
+  };
+  EXPECT_EQ(refusal("color_distance", [](Json& r) { r["floor"]["value"] = nullptr; }), "");
+  EXPECT_EQ(refusal("color_distance", [](Json& r) { r["floor"]["value"] = "x"; }),
+            "r.json: damaged report: metrics.color_distance.floor.value is string, expected a number or null");
+  EXPECT_EQ(refusal("color_distance", [](Json& r) { r["skill"] = 1; }),
+            "r.json: damaged report: metrics.color_distance.skill is number, expected an object");
+  EXPECT_EQ(
+      refusal("average_wasserstein",
+              [](Json& r) {
+                r["phases"]["values"] = {1.0, "x"};
+              }),
+      "r.json: damaged report: metrics.average_wasserstein.phases.values[1] is string, expected a number or null");
+  EXPECT_EQ(
+      refusal("accuracy",
+              [](Json& r) {
+                r["per_threshold"][0]["floor"] = {{"value", "x"}};
+              }),
+      "r.json: damaged report: metrics.accuracy.per_threshold[0].floor.value is string, expected a number or null");
 }
 
 /// The first is exact; the second is not, and the third has no color.
@@ -324,7 +445,7 @@ TEST(FormatComparison, AnInfiniteFidelityIsBest) {
   EXPECT_THAT(compared_with_an_exact_one(against_other, ComparisonFormat::kText),
               ContainsRegex("color fidelity +CF +↑ +dB +\\+∞ +-\n"));
   EXPECT_THAT(compared_with_an_exact_one(against_other, ComparisonFormat::kCsv),
-              HasSubstr("color_fidelity,,,dB,higher,inf,40,,inf,,,\n"));
+              HasSubstr("color_fidelity,,,dB,higher,inf,40,,inf,,,,distinguishable\n"));
   EXPECT_THAT(compared_with_an_exact_one(against_exact, ComparisonFormat::kLatex), HasSubstr("$\\infty$"));
   const std::string page = compared_with_an_exact_one(against_other, ComparisonFormat::kHtml);
   EXPECT_THAT(page, HasSubstr("data-value=\"Infinity\"")) << "as a script reads it";

@@ -18,7 +18,7 @@ using ::testing::Not;
 using Json = nlohmann::ordered_json;
 
 LeaderboardPair done(const std::string& sequence, const std::string& method, double color_distance, double overlap) {
-  static const Json report = report_of(painted_sheet(400, 1), painted_sheet(300, 2));
+  static const Json report = test::without_levels(report_of(painted_sheet(400, 1), painted_sheet(300, 2)));
   LeaderboardPair pair{sequence, method, PairState::kDone, "", report, "pairs/" + sequence + "/" + method, true};
   pair.report["metrics"]["color_distance"]["value"] = color_distance;
   pair.report["metrics"]["overlap"]["value"] = overlap;
@@ -39,8 +39,8 @@ struct Board {
              {"T", "B", PairState::kFailed, "b.ply: truncated", nullptr, "pairs/T/B", false}};
   }
 
-  const ScoreSection section(const std::string& id) const {
-    for (const ScoreSection& section : leaderboard_sections(manifest, pairs)) {
+  ScoreSection section(const std::string& id, bool is_plain = true) const {
+    for (const ScoreSection& section : leaderboard_scores(manifest, pairs, {.plain_ranking = is_plain}).sections) {
       if (section.kind.id() == id) return section;
     }
     throw std::runtime_error("no section " + id);
@@ -50,7 +50,10 @@ struct Board {
 std::vector<std::string> texts_of(const TableRow& row) {
   std::vector<std::string> texts;
   for (const TableCell& cell : row.cells) {
-    texts.push_back(cell.text + (cell.mark == Mark::kBest ? "*" : cell.mark == Mark::kSecond ? "+" : ""));
+    texts.push_back(cell.text + (cell.mark == Mark::kBest           ? "*"
+                                 : cell.mark == Mark::kSecond       ? "+"
+                                 : cell.mark == Mark::kBestUntested ? "?"
+                                                                    : ""));
   }
   return texts;
 }
@@ -72,11 +75,11 @@ TEST(LeaderboardTables, AnInfiniteFidelityIsBest) {
   exact["metrics"]["color_fidelity"]["value"] = nullptr;
   exact["warnings"].push_back({{"id", "color_fidelity_infinite"}, {"message", "every color is exact"}});
   board.pairs[1].report["metrics"]["color_fidelity"]["value"] = 40.0;
-  const ScoreTable table = board.section("color_fidelity").computed;
+  const ScoreTable table = board.section("color_fidelity", false).computed;
   EXPECT_THAT(texts_of(table.rows[0]), ElementsAre("∞*", ::testing::_));
   EXPECT_THAT(texts_of(table.rows[1]), ElementsAre("40.00+", "x"));
-  EXPECT_THAT(leaderboard_csv(board.manifest, board.pairs),
-              HasSubstr("color_fidelity,,,dB,higher,S,A,computed,done,inf,best\n"));
+  EXPECT_THAT(typeset_leaderboard(board.manifest, board.pairs).csv,
+              HasSubstr("color_fidelity,,,dB,higher,S,A,computed,done,inf,best,,,\n"));
 }
 
 TEST(LeaderboardTables, MissingMapsAreDashesInEveryTable) {
@@ -116,9 +119,9 @@ TEST(LeaderboardTables, PublishedNumbersStayAsPublished) {
   EXPECT_FALSE(board.section("accuracy@0.1").published);
   EXPECT_FALSE(board.section("local_color_recall.coverage").published);
   const LeaderboardDocuments documents = typeset_leaderboard(board.manifest, board.pairs);
-  EXPECT_THAT(documents.csv, HasSubstr("color_distance,,,as printed,lower,S,C,published,failed,,\n"));
-  EXPECT_THAT(documents.csv, HasSubstr("color_distance,,,of 255,lower,S,A,normalized,done,255,\n"));
-  EXPECT_THAT(documents.csv, HasSubstr("accuracy,,0.2,m,lower,S,A,published,done,0.04,\n"));
+  EXPECT_THAT(documents.csv, HasSubstr("color_distance,,,as printed,lower,S,C,published,failed,,,,,\n"));
+  EXPECT_THAT(documents.csv, HasSubstr("color_distance,,,of 255,lower,S,A,normalized,done,255,,,,\n"));
+  EXPECT_THAT(documents.csv, HasSubstr("accuracy,,0.2,m,lower,S,A,published,done,0.04,,,,\n"));
   EXPECT_THAT(documents.text, HasSubstr("different scales"));
 }
 
@@ -134,11 +137,68 @@ TEST(LeaderboardTables, RegistrationIsMarkedWithinItsSequence) {
   Board board;
   board.manifest.published = parse_published(Json::parse(R"({"source":"paper","registration":{
       "S":{"prefusion":{"rmse":9,"spatial_consistency":null},"normal":{"rmse":2}},"T":{"normal":{"rmse":5},"regularized":{"rmse":4}}}})"));
-  const ScoreTable table = *registration_table(board.manifest);
+  const ScoreTable table = *registration_table(board.manifest, true);
   EXPECT_THAT(texts_of(table.rows[0]), ElementsAre("9+", "-", "-", "-"));
   EXPECT_THAT(texts_of(table.rows[1]), ElementsAre("2*", "-", "-", "-"));
   EXPECT_THAT(texts_of(table.rows[2]), ElementsAre("5+", "-", "-", "-"));
   EXPECT_THAT(texts_of(table.rows[3]), ElementsAre("4*", "-", "-", "-"));
+}
+
+TEST(LeaderboardTables, PublishedNumbersAreNotTested) {
+  Board board;
+  board.manifest.published = parse_published(Json::parse(R"({"source":"paper","metrics":{
+      "overlap":{"S":{"A":0.5,"B":0.75}}},"registration":{"S":{"normal":{"rmse":2},"prefusion":{"rmse":9}}}})"));
+  EXPECT_THAT(texts_of(board.section("overlap", false).published->rows[1]), ElementsAre("75?"));
+  EXPECT_THAT(texts_of(registration_table(board.manifest, false)->rows[0]), ElementsAre("2?", "-", "-", "-"));
+}
+
+/// On S, A is better by every phase of AWD; on T, B has no map.
+Board board_with_levels() {
+  Board board;
+  for (std::size_t i = 0; i < 2; ++i) {
+    Json& metrics = board.pairs[i].report["metrics"];
+    metrics["color_distance"]["skill"] = {{"value", i == 0 ? 0.5 : 0.75}, {"se", 0.01}};
+    metrics["color_distance"]["floor"] = {{"value", 0.0625}, {"se", 0.01}, {"n", 400}};
+    metrics["color_distance"]["chance"] = {{"value", 0.5}, {"se", 0.01}, {"n", 400}};
+    const double value = i == 0 ? 0.25 : 0.5;
+    metrics["average_wasserstein"]["value"] = value;
+    metrics["average_wasserstein"]["phases"] = {{"n", 2},     {"mean", value}, {"std", 0.125},
+                                                {"min", 0.2}, {"max", 0.6},    {"values", {value, value + 0.125}}};
+  }
+  return board;
+}
+
+TEST(LeaderboardTables, SkillHasASectionOfItsOwn) {
+  const Board board = board_with_levels();
+  const ScoreSection skill = board.section("color_distance.skill", false);
+  EXPECT_EQ(skill.computed.title, "skill of color distance ↑") << "no share of 255";
+  EXPECT_THAT(texts_of(skill.computed.rows[0]), ElementsAre("0.5000", "-"));
+  EXPECT_THAT(texts_of(skill.computed.rows[1]), ElementsAre("0.7500?", "x"));
+  const LeaderboardDocuments documents = typeset_leaderboard(board.manifest, board.pairs);
+  for (const std::string& text : {documents.text, documents.markdown, documents.latex, documents.html})
+    EXPECT_THAT(text, HasSubstr("skill of color distance"));
+  EXPECT_THAT(documents.csv,
+              HasSubstr("color_distance,,,unit RGB,lower,S,B,computed,done,0.1,best untested,0.0625,0.5,\n"));
+  EXPECT_THAT(documents.csv, HasSubstr("color_distance,skill,,1,higher,S,B,computed,done,0.75,best untested,,,\n"));
+}
+
+TEST(LeaderboardTables, RankingsSayWhatIsDistinguishable) {
+  Board board = board_with_levels();
+  const ScoreSection section = board.section("average_wasserstein", false);
+  EXPECT_THAT(texts_of(section.computed.rows[0]), ElementsAre("0.2500*", ::testing::_));
+  EXPECT_THAT(texts_of(section.computed.rows[1]), ElementsAre("0.5000+", "x"));
+  EXPECT_THAT(section.computed.notes, ElementsAre("1 of 1 ranking distinguishable over the grid's phases"));
+  const LeaderboardDocuments documents = typeset_leaderboard(board.manifest, board.pairs);
+  EXPECT_THAT(documents.text, HasSubstr("0.2500* ± 0.12"));
+  EXPECT_THAT(documents.text, ContainsRegex("\n1 of [0-9]+ rankings distinguishable over the grid's phases, "));
+  EXPECT_THAT(documents.text, Not(HasSubstr("1 of 1 ranking"))) << "one note for all tables";
+  EXPECT_THAT(documents.latex, HasSubstr("1 of 1 ranking distinguishable")) << "its tables stand alone";
+  EXPECT_THAT(documents.html, HasSubstr("1 of 1 ranking distinguishable"));
+  EXPECT_THAT(documents.latex, Not(HasSubstr("pm")));
+  EXPECT_THAT(typeset_leaderboard(board.manifest, board.pairs, {.bands = true}).latex, HasSubstr("0.2500 $\\pm$ 0.12"));
+  board.pairs[1].report["metrics"]["average_wasserstein"]["phases"]["values"] = {0.5, 0.25};
+  EXPECT_THAT(texts_of(board.section("average_wasserstein", false).computed.rows[1]), ElementsAre("0.5000*", "x"));
+  EXPECT_THAT(texts_of(board.section("average_wasserstein", true).computed.rows[1]), ElementsAre("0.5000+", "x"));
 }
 
 TEST(LeaderboardPage, LinksAndNamesAreEscaped) {

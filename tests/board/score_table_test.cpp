@@ -58,7 +58,7 @@ ScoreTable small_table() {
   ScoreTable table{"t", "Chamfer ↓", {"method"}, {"A", "B_2"}, {}, {"a note"}};
   table.rows.push_back({{"Ours & co"}, {number(1, "1.000"), nothing("x")}});
   table.rows.push_back({{"x|y"}, {number(12, "12.00"), nothing()}});
-  mark_columns(table, "lower");
+  for (std::size_t column = 0; column < 2; ++column) mark_best(cells_of(table, column), "lower");
   return table;
 }
 
@@ -95,6 +95,21 @@ TEST(Typeset, Latex) {
             "\\bottomrule\n\\end{tabular}}\n"
             "\\par\\smallskip{\\footnotesize a note}\n"
             "\\end{table}\n");
+}
+
+TEST(Typeset, ABandStandsBehindItsValue) {
+  ScoreTable table{"t", "", {"method"}, {"A"}, {}, {}};
+  table.rows.push_back({{"x"}, {{"0.298", 0.298, Mark::kBestUntested, "", "± 0.097"}}});
+  table.rows.push_back({{"y"}, {number(1, "12.50")}});
+  EXPECT_EQ(typeset({table}, TableFormat::kText),
+            "method               A\n"
+            "x       0.298? ± 0.097\n"
+            "y                12.50\n");
+  EXPECT_THAT(typeset({table}, TableFormat::kMarkdown), HasSubstr("| x | 0.298? ± 0.097 |"));
+  EXPECT_THAT(typeset({table}, TableFormat::kLatex), HasSubstr("x & \\cellcolor{gray!25}0.298 $\\pm$ 0.097 \\\\"));
+  std::vector<ScoreTable> tables{table};
+  remove_bands(tables);
+  EXPECT_THAT(typeset(tables, TableFormat::kMarkdown), HasSubstr("| x | 0.298? |"));
 }
 
 TEST(Typeset, LatexHasMinusSigns) {

@@ -33,4 +33,17 @@ inline nlohmann::ordered_json map_report_of(const PointCloud& map, const Evaluat
   return make_report(described("map.ply", map), evaluate_map(map, options), a_run());
 }
 
+/// The report without what its numbers are worth, as a version before wrote it.
+inline nlohmann::ordered_json without_levels(nlohmann::ordered_json report) {
+  const auto strip = [](nlohmann::ordered_json& record) {
+    for (const char* level : {"floor", "chance", "skill", "skill_map", "phases"}) record.erase(level);
+  };
+  for (auto& [id, record] : report["metrics"].items()) {
+    strip(record);
+    if (!record.contains("per_threshold")) continue;
+    for (auto& entry : record["per_threshold"]) strip(entry);
+  }
+  return report;
+}
+
 }  // namespace cmap::test

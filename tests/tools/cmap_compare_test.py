@@ -33,6 +33,22 @@ class Compare(CmapEval):
         self.assertEqual(result.returncode, code, result.stderr.decode())
         return result.stdout.decode()
 
+    def levels(self, name, source, skill, chance, phases):
+        """A copy of a report with what its numbers are worth, as the metrics have it."""
+        report = json.loads(source.read_text())
+        metrics = report["metrics"]
+        distance, wasserstein = metrics["color_distance"], metrics["average_wasserstein"]
+        distance["floor"] = {"value": 0.05, "se": 0.001, "n": 3}
+        distance["chance"] = {"value": chance, "se": 0.001, "n": 3}
+        distance["skill"] = {"value": skill, "se": 0.002}
+        wasserstein["value"] = phases[0]
+        wasserstein["phases"] = {
+            "n": len(phases), "mean": sum(phases) / len(phases), "std": 0.0625, "min": min(phases), "max": max(phases), "values": phases
+        }
+        curve = metrics["local_color_recall"]["curve"]
+        curve["chance"] = [0.5 * value for value in curve["value"]]
+        return self.input(name, json.dumps(report))
+
     def changed(self, name, change):
         """A copy of report a with something changed."""
         report = json.loads(self.a.read_text())
@@ -66,9 +82,53 @@ class Compare(CmapEval):
         without = self.report("without.json", maps[0], maps[0.25], "--metrics", "chamfer")
         self.assertNotIn("intervals of these", self.compare(near, without, "--baseline", near))
 
+    def test_what_noise_explains_shares_its_mark(self):
+        """Planes over a plane: near; far, worse in every block; uneven, worse in one half and nearly as much better in the other."""
+        plane = [(x, y) for x in range(40) for y in range(40)]
+        ground = self.input("ground.ply", ply([(x, y, 0) for x, y in plane]))
+        heights = {
+            "near": lambda x: 0.125,
+            "far": lambda x: 0.25,
+            "uneven": lambda x: 0.135 if x < 20 else 0.1151,
+        }
+        maps = {name: self.input(f"{name}.ply", ply([(x, y, z(x)) for x, y in plane])) for name, z in heights.items()}
+        blocks = ("--metrics", "chamfer,hausdorff", "--bootstrap", "200", "--block", "5")
+        near, far, uneven = (self.report(f"{name}.json", ground, path, *blocks) for name, path in maps.items())
+        self.assertRegex(self.compare(near, far), r"Chamfer distance +CD# +↓ +m +0.2500\* +0.5000\+\n")
+        table = self.compare(near, far, uneven)
+        self.assertRegex(table, r"Chamfer distance +CD# +↓ +m +0.2500\* +0.5000\+ +0.2501\*\n")
+        self.assertRegex(table, r"Hausdorff distance +↓ +m +0.1250\? +0.2500 +0.1350\n", "a maximum has no interval")
+        self.assertIn("0 of 2 rankings distinguishable at 95 %, 1 not, 1 not tested (no interval of the difference)\n", table)
+        plain = self.compare(near, far, uneven, "--plain-ranking")
+        self.assertRegex(plain, r"Chamfer distance +CD# +↓ +m +0.2500\* +0.5000 +0.2501\+\n")
+        self.assertNotIn("distinguishable", plain)
+
+    def test_levels_and_phases(self):
+        """Skill has rows; AWD its spread over the grid's phases, one of which ranks the other way round."""
+        a = self.levels("x.json", self.a, 0.5, 0.25, [1.0, 2.0])
+        b = self.levels("y.json", self.b, 0.75, 0.3, [1.5, 1.75])
+        table = self.compare(a, b)
+        self.assertRegex(table, r"skill of color distance +↑ +0.5000 +0.7500\?\n")
+        self.assertRegex(table, r"AWD +↓ +m +1.000\* ± 0.062 +1.500\* ± 0.062\n")
+        self.assertIn("over the grid's phases", table)
+        rows = csv.DictReader(io.StringIO(self.compare(a, b, "--metrics", "CD,AWD", "--format", "csv")))
+        values = {(row["metric"], row["part"]): (row["x"], row["y"]) for row in rows}
+        self.assertEqual(values["color_distance", "floor"], ("0.05", "0.05"))
+        self.assertEqual(values["color_distance", "chance"], ("0.25", "0.3"))
+        self.assertEqual(values["color_distance", "skill"], ("0.5", "0.75"))
+        self.assertEqual(values["average_wasserstein", "phase_std"], ("0.0625", "0.0625"))
+        for bands in ([], ["--bands"]):
+            text = self.compare(a, b, "--format", "latex", *bands)
+            self.assertEqual("$\\pm$ 0.062" in text, bool(bands))
+            check_latex(self, text, self.folder)
+        self.compare(a, b, "--figure", self.outputs / "f.svg")
+        svg = (self.outputs / "f.svg").read_text()
+        for says in ("local color recall ↑ [%], dashed: by chance", "Lines over bars", "skill of color distance ↑"):
+            self.assertIn(says, svg)
+
     def test_text(self):
         """The two-points pair by hand: chamfer 4.375, overlap 0.5; the reference against itself 0 and 1."""
-        table = self.compare(self.a, self.b)
+        table = self.compare(self.a, self.b, "--plain-ranking")
         self.assertRegex(table, r"metric +symbol +unit +a +b")
         self.assertRegex(table, r"Chamfer distance +CD# +↓ +m +4.375\+ +0\*")
         self.assertRegex(table, r"overlap +Overlap +↑ +% +50.00\+ +100.00\*")
@@ -79,7 +139,8 @@ class Compare(CmapEval):
     def test_csv_has_the_numbers_of_the_reports(self):
         rows = list(csv.DictReader(io.StringIO(self.compare(self.a, self.b, "--format", "csv"))))
         reports = {name: json.loads((self.inputs / f"{name}.json").read_text())["metrics"] for name in "ab"}
-        for row in rows:
+        of_values = [row for row in rows if row["part"] in ("", "coverage")]
+        for row in of_values:
             for name, metrics in reports.items():
                 record = metrics[row["metric"]]
                 if row["at_m"]:
@@ -92,7 +153,8 @@ class Compare(CmapEval):
                 self.assertEqual(row[name], "" if expected is None else row[name])
                 self.assertEqual(float(row[name]) if row[name] else None, expected, row)
                 self.assertNotRegex(row[name], r"\.\d{3}(e|$)", "spreadsheets read a point before three digits as thousands")
-        self.assertEqual(len(rows), 4 + 1 + 4 + 4 * 5 + 2, "color, coverage, geometry, thresholds, distribution")
+        metrics = {row["metric"] for row in of_values}
+        self.assertEqual(len(of_values), len(metrics) + 1 + 4 * (5 - 1), "each metric, coverage, five thresholds")
 
     def test_baseline(self):
         for arguments in ((self.a, self.b), (self.b,)):
@@ -112,10 +174,14 @@ class Compare(CmapEval):
         self.assertIn("| a\\|b | c\\_d |", table)
         rows = [line for line in table.splitlines() if line.startswith("|")]
         self.assertEqual({len(re.findall(r"(?<!\\)\|", row)) for row in rows}, {7})
-        self.assertIn("| *4.375* | **0** |", table)
+        self.assertIn("| 4.375 | 0? |", table)
+        self.assertIn("| *4.375* | **0** |", self.compare(self.a, self.b, "--format", "markdown", "--plain-ranking"))
 
     def test_latex(self):
         text = self.compare(self.a, self.b, "--format", "latex", "--names", "100 % & more_{},\\evil#~^", "--baseline", self.a)
+        self.assertIn("4.375 & \\cellcolor{gray!25}0 ", text)
+        check_latex(self, text, self.folder)
+        text = self.compare(self.a, self.b, "--format", "latex", "--plain-ranking")
         self.assertIn("\\cellcolor{orange!35}4.375 & \\cellcolor{red!35}0", text)
         check_latex(self, text, self.folder)
 
@@ -124,6 +190,8 @@ class Compare(CmapEval):
         self.assertNotIn("<img", page)
         self.assertNotRegex(page, r"(src|href)=\"(?!#)")
         self.assertIn("default-src 'none'", page)
+        self.assertIn('class="value untested" data-value="0"', page)
+        page = self.compare(self.a, self.b, "--format", "html", "--plain-ranking")
         self.assertIn('class="value best" data-value="0"', page)
 
     def test_output_file(self):
@@ -170,7 +238,7 @@ class Compare(CmapEval):
         self.assertRegex(result.stderr.decode(), r"^cmap_compare: warning: version of cmap: 0\.1\.0 for earlier; ")
         self.assertIn("within rounding of the threshold", result.stderr.decode())
         self.assertRegex(result.stdout.decode(), r"\n *version of cmap: 0\.1\.0 for earlier; ")
-        self.assertRegex(result.stdout.decode(), r"Chamfer distance +CD# +↓ +m +4.375\+ +0\*")
+        self.assertRegex(result.stdout.decode(), r"Chamfer distance +CD# +↓ +m +4.375 +0\?")
         same = self.changed("same.json", lambda r: r["tool"].update(version="0.0.3"))
         result = self.run_program(self.a, same, program=(COMPARE,))
         self.assertEqual(result.returncode, DONE, result.stderr.decode())

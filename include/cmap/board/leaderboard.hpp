@@ -98,8 +98,16 @@ struct LeaderboardDocuments {
   std::string markdown, csv, latex, html;
 };
 
-LeaderboardDocuments typeset_leaderboard(const LeaderboardManifest& manifest,
-                                         const std::vector<LeaderboardPair>& pairs);
+/// How tables look.
+struct LeaderboardLook {
+  bool plain_ranking = false;  ///< best and second best by value alone
+  bool bands = false;          ///< in LaTeX, too: the spread over the grid's phases behind a value
+};
+
+/// Best and second best of each column are marked as in a comparison (comparison.hpp): computed methods that are not
+/// distinguishable share their mark, what nobody tested, as all that was published, has one of its own.
+LeaderboardDocuments typeset_leaderboard(const LeaderboardManifest& manifest, const std::vector<LeaderboardPair>& pairs,
+                                         const LeaderboardLook& look = {});
 
 /// Writes tables.md, tables.csv, tables.tex and index.html.
 void write_documents(const LeaderboardDocuments& documents, const std::filesystem::path& output);
