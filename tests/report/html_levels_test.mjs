@@ -121,6 +121,7 @@ test('a level without a value says why: below the table, on its cell and in the 
   await row.locator('.term').click();
   const details = page.locator('tr[data-metric=local_color_recall] + tr.details');
   assert.match(await details.textContent(), new RegExp(`No skill: ${saturated}`));
+  assert.doesNotMatch(await details.textContent(), /skill map|per radius/, 'levels have places of their own');
   assert.match(await details.textContent(), /chance0\.9950, standard error 0\.001, from 20,000/);
 });
 

@@ -34,9 +34,10 @@ const shownElsewhere = new Set(['value', 'unit', 'better', 'symbol', 'per_thresh
 const isObject = (value: JsonValue): value is Json =>
   typeof value === 'object' && value !== null && !Array.isArray(value);
 
-/** Members of a record and of records within it, by readable names. */
+/** Members of a record and of records within it, by readable names; levels have places of their own. */
 export function flatten(record: Json, prefix = ''): [string, JsonValue][] {
   return Object.entries(record).flatMap(([key, value]): [string, JsonValue][] => {
+    if (shownAsLevels.has(key)) return [];
     const name = prefix + key.replaceAll('_', ' ');
     if (isObject(value)) return flatten(value, `${name}, `);
     if (Array.isArray(value) && value.some(isObject)) {
@@ -47,7 +48,7 @@ export function flatten(record: Json, prefix = ''): [string, JsonValue][] {
 }
 
 function facts(record: Json): [string, JsonValue][] {
-  return flatten(Object.fromEntries(Object.entries(record).filter(([key]) => !shownElsewhere.has(key) && !shownAsLevels.has(key))));
+  return flatten(Object.fromEntries(Object.entries(record).filter(([key]) => !shownElsewhere.has(key))));
 }
 
 /** What such a part of the report says of a metric, or of its value at a threshold. */
