@@ -351,7 +351,19 @@ class Results(CmapEval):
                 place[path[-1]] = value
             return report
 
+        good["metrics"]["chamfer"]["floor"] = {"value": 0.2, "se": 0.001, "n": 3}
+        good["metrics"]["color_distance"]["skill"] = {"value": None, "reason": "the floor is no better than chance"}
+        band = {"n": 1, "mean": 0.1, "std": 0, "min": 0.1, "max": 0.1, "values": [0.1, None]}
+        good["metrics"]["average_wasserstein"]["phases"] = band
+        good["metrics"]["accuracy"]["per_threshold"][0]["floor"] = {"value": 0.2, "se": 0.001, "n": 3}
+        self.check_report(json.dumps(good))
         for report in (
+            broken("metrics", "chamfer", "floor", "value"),
+            broken("metrics", "chamfer", "floor", "se", value=-0.1),
+            broken("metrics", "color_distance", "skill", "reason"),
+            broken("metrics", "average_wasserstein", "phases", "values"),
+            broken("metrics", "average_wasserstein", "phases", "values", value=[]),
+            broken("metrics", "accuracy", "per_threshold", 0, "floor", value=0.2),
             broken("schema", value="cmap.report/1"),
             broken("extra", value=1),
             broken("warnings"),
