@@ -76,8 +76,7 @@ void add_file_options(cmap::CommandLine& line, Arguments& a) {
   line.add_choice("--format", a.format, {{Format::kTable, "table"}, {Format::kJson, "json"}}, "FORMAT",
                   "what to print: table or json [table]");
   line.add_flag("--levels", a.levels,
-                "floor, chance and skill beside each value of the table, however narrow the terminal; a wide one shows "
-                "them anyway");
+                "floor, chance and skill beside each value of the table; a wide terminal shows them anyway");
   line.add("--config", a.config, "FILE", "JSON file of the options under Metrics; the command line wins").not_empty();
   line.add("--preset", a.preset, "NAME", "shipped configuration: paper, indoor, outdoor, aerial, mapeval").not_empty();
 }

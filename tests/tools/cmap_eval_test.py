@@ -160,7 +160,7 @@ class Results(CmapEval):
         """From the root of the source, or a folder that looks like it."""
         help_text = self.run_program("--help").stdout.decode()
         examples = [line for line in help_text.splitlines() if line.startswith("  cmap_eval ")]
-        self.assertEqual(len(examples), 2, "a pair and one map")
+        self.assertEqual(len(examples), 3, "a pair, one map, and what the numbers are worth")
         (self.folder / "data_samples").symlink_to(SOURCE / "data_samples")
         (self.folder / "bin").mkdir()
         (self.folder / "bin/cmap_eval").symlink_to(PROGRAM)
@@ -179,7 +179,7 @@ class Results(CmapEval):
     def test_the_help_names_every_option_and_exit_code(self):
         help_text = self.run_program("--help").stdout.decode()
         parameters = self.evaluate(self.reference, self.estimate)["parameters"]
-        for option in (*parameters, "output", "format", "config", "preset", "transform", "require", "export-errors",
+        for option in (*parameters, "output", "format", "levels", "config", "preset", "transform", "require", "export-errors",
                        "export-reference-errors", "threads", "quiet", "version"):
             self.assertIn(f" --{option} ", help_text.replace("\n", " ").replace(",", " "))
         for code in ("0 done", "1 a --require", "2 wrong usage", "3 an input", "4 the inputs", "70 internal"):
