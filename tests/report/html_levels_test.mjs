@@ -45,7 +45,7 @@ function withLevels() {
     chance: { value: 0.995, se: 0.001, n: 20000 },
     skill: { value: null, reason: saturated },
     skill_map: {
-      tau: [0.02, 0.1],
+      tau: [0.2 * 0.1, 0.1], // 0.020000000000000004
       n: 2000,
       per_radius: [
         { radius_m: 0.1, value: [0.3, 0.5], floor: [0.6, 0.7], chance: [0.1, 0.4], skill: [0.4, -0.25] },

@@ -92,7 +92,7 @@ function notes(map: SkillMap, record: Json, used: { tau?: number; radius_m?: num
       'would score no better than shuffled colors.',
     `Evaluated at radius ${used.radius_m} m and tau ${used.tau}${framed ? ' (framed)' : ''}: ${own}. ` +
       (best
-        ? `Highest: ${skillText(best.skill!)} at radius ${best.radius_m} m and tau ${best.tau}.`
+        ? `Highest: ${skillText(best.skill!)} at radius ${short(best.radius_m)} m and tau ${short(best.tau)}.`
         : 'No radius and tau of this map tells colors apart.'),
     `From a sample of ${number(map.n)} points.`,
   ];
