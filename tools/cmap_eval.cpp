@@ -39,6 +39,7 @@ constexpr const char* kExample =
     "Examples:\n"
     "  cmap_eval data_samples/town/reference.ply data_samples/town/estimate.ply -o report.json --require 'LCR>=20%'\n"
     "  cmap_eval data_samples/town/estimate.ply -o map.json --html map.html --require 'point_spacing<=0.3'\n"
+    "  cmap_eval data_samples/town/reference.ply data_samples/town/estimate.ply --levels\n"
     "\n"
     "Exit codes: 0 done; 1 a --require did not hold; 2 wrong usage or configuration; 3 an input is missing, malformed\n"
     "or without a finite point; 4 the inputs do not support what was asked; 70 internal error.";
@@ -50,6 +51,7 @@ struct Arguments {
   std::string reference, estimate;
   std::string output, html, figure, config, preset, transform, initial;
   Format format = Format::kTable;
+  bool levels = false;
   std::string reference_trajectory, estimate_trajectory, times, sensor;
   std::string estimate_errors, reference_errors;
   std::vector<std::string> requirements;
@@ -73,6 +75,8 @@ void add_file_options(cmap::CommandLine& line, Arguments& a) {
       .not_empty();
   line.add_choice("--format", a.format, {{Format::kTable, "table"}, {Format::kJson, "json"}}, "FORMAT",
                   "what to print: table or json [table]");
+  line.add_flag("--levels", a.levels,
+                "floor, chance and skill beside each value of the table; a wide terminal shows them anyway");
   line.add("--config", a.config, "FILE", "JSON file of the options under Metrics; the command line wins").not_empty();
   line.add("--preset", a.preset, "NAME", "shipped configuration: paper, indoor, outdoor, aerial, mapeval").not_empty();
 }
@@ -225,6 +229,12 @@ void check_outputs(const Arguments& a) {
   }
 }
 
+/// Levels where they are asked for, and where the terminal has room for them.
+cmap::TableLayout table_layout(const Arguments& arguments) {
+  const std::size_t width = cmap::terminal_width();
+  return {.levels = arguments.levels || width >= cmap::kWidthForLevels, .width = width};
+}
+
 /// Prints and writes everything: all outputs or none, and none before the last one is complete.
 template <class Evaluated>
 void deliver(const Arguments& arguments, const Evaluated& evaluation, const nlohmann::ordered_json& report,
@@ -233,7 +243,7 @@ void deliver(const Arguments& arguments, const Evaluated& evaluation, const nloh
   files.add(arguments.html, [&](cmap::OutputFile& file) { cmap::write_html_report(report, evaluation, file); });
   files.add(arguments.output, [&](cmap::OutputFile& file) { file.write(report_text); });
   if (!arguments.common.quiet && !cmap::any_to_standard_output(arguments.outputs())) {
-    cmap::print(arguments.format == Format::kJson ? report_text : cmap::format_table(report));
+    cmap::print(arguments.format == Format::kJson ? report_text : cmap::format_table(report, table_layout(arguments)));
   }
   files.commit();
 }

@@ -1,9 +1,13 @@
 #include "program.hpp"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 
@@ -19,6 +23,18 @@ void add_common_options(CommandLine& line, CommonArguments& arguments, const cha
 void print(const std::string& text) {
   const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
   if (!written && errno != EPIPE) throw OutputError(fmt::format("standard output: {}", std::strerror(errno)));
+}
+
+std::size_t terminal_width() {
+  if (isatty(STDOUT_FILENO) != 1) return 0;
+  if (const char* columns = std::getenv("COLUMNS")) {
+    std::size_t width = 0;
+    const char* end = columns + std::strlen(columns);
+    if (const auto [rest, fault] = std::from_chars(columns, end, width); fault == std::errc() && rest == end)
+      return width;
+  }
+  winsize size{};
+  return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
 }
 
 int run_program(CommandLine& line, int argc, char** argv, const std::function<ExitCode()>& run) {

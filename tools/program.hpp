@@ -2,6 +2,7 @@
 
 // What all programs share: common options and how they end.
 
+#include <cstddef>
 #include <functional>
 #include <string>
 
@@ -19,6 +20,10 @@ void add_common_options(CommandLine& line, CommonArguments& arguments, const cha
 
 /// To standard output; throws OutputError where that fails, as on a full disk. Whoever closes a pipe has read enough.
 void print(const std::string& text);
+
+/// Characters of a line of the terminal that standard output is: as COLUMNS says, else as the terminal does. 0 of a
+/// pipe or a file.
+std::size_t terminal_width();
 
 /// What the help of programs says that read and write single files.
 inline constexpr const char* kDash = "\nIn place of a file, - is standard input or standard output.";

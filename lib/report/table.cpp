@@ -5,6 +5,8 @@
 #include "cmap/report/report.hpp"
 #include "cmap/report/table_text.hpp"
 #include "fairness_table.hpp"
+#include "levels_table.hpp"
+#include "table_row.hpp"
 
 namespace cmap {
 namespace {
@@ -18,12 +20,9 @@ std::string_view arrow(const Json& metric) {
   return better == "lower" ? "↓" : better == "higher" ? "↑" : " ";
 }
 
-std::string row(std::string_view title, const Json& metric, const std::string& value, std::string_view unit,
-                const std::string& remark) {
-  const std::string symbol = metric.at("symbol").get<std::string>();
-  const std::string line = fmt::format("  {} {} {} {} {} {}", padded(title, 30), padded(symbol, 8), arrow(metric),
-                                       fmt::format("{:>11}", value), padded(unit, 10), remark);
-  return line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+/// A row of the metric, without its value.
+TableRow row_of(std::string_view title, const Json& metric, const std::string& unit) {
+  return {.title = title, .symbol = metric.at("symbol").get<std::string>(), .arrow = arrow(metric), .unit = unit};
 }
 
 std::string meters(const Json& v) { return fmt::format("{} m", v.get<double>()); }
@@ -56,7 +55,7 @@ std::string remark(const MetricInfo& info, const Json& metric) {
                        meters(parameters.at("radius_m")));
   }
   if (info.id == "color_consistency") return consistency_remark(metric);
-  if (info.id == "average_wasserstein") {
+  if (info.id == "average_wasserstein" || info.id == "color_wasserstein") {
     return fmt::format("{} voxels of {}, >= {} points", with_thousands(metric.at("n_voxels")),
                        meters(parameters.at("voxel_m")), parameters.at("min_points").get<std::uint64_t>());
   }
@@ -86,24 +85,50 @@ std::string threshold_label(const Json& entry) {
   return fmt::format("{:>10}", fmt::format("<= {}", meters(entry.at("threshold_m"))));
 }
 
-std::string value_rows(const Json& report, const MetricInfo& info, const Json& metric) {
-  const std::string unit = shown_unit(info);
-  if (metric.contains("per_threshold")) {
-    std::string values;
-    for (const Json& entry : metric.at("per_threshold"))
-      values += fmt::format(" {:>{}}", shown(info, entry.at("value")), threshold_label(entry).size());
-    return row(info.title, metric, values, unit, "");
+/// The value of each entry under its threshold.
+template <class ValueOf>
+std::string threshold_columns(const MetricInfo& info, const Json& metric, ValueOf&& value_of) {
+  std::string columns;
+  for (const Json& entry : metric.at("per_threshold"))
+    columns += fmt::format(" {:>{}}", shown(info, value_of(entry)), threshold_label(entry).size());
+  return columns;
+}
+
+std::string threshold_rows(const MetricInfo& info, const Json& metric, const TableLayout& layout) {
+  TableRow row = row_of(info.title, metric, shown_unit(info));
+  row.value = threshold_columns(info, metric, [](const Json& entry) { return entry.at("value"); });
+  std::string rows = format_row(row, layout.width);
+  if (layout.levels && metric.at("per_threshold").front().contains("floor")) {
+    const auto floor_of = [](const Json& entry) { return entry.at("floor").at("value"); };
+    rows += format_row({.title = "  floor", .value = threshold_columns(info, metric, floor_of), .unit = row.unit},
+                       layout.width);
   }
-  if (metric.contains("per_range")) {
-    std::string rows;
-    for (const Json& bin : metric.at("per_range")) {
-      rows += row(fmt::format("CD at {} to {} m", bin.at("lo_m").get<double>(), bin.at("hi_m").get<double>()), metric,
-                  digits(bin.at("value")), unit, "");
-    }
-    return rows;
+  return rows;
+}
+
+std::string range_rows(const MetricInfo& info, const Json& metric) {
+  std::string rows;
+  for (const Json& bin : metric.at("per_range")) {
+    const std::string title =
+        fmt::format("CD at {} to {} m", bin.at("lo_m").get<double>(), bin.at("hi_m").get<double>());
+    TableRow row = row_of(title, metric, shown_unit(info));
+    row.value = digits(bin.at("value"));
+    rows += format_row(row, 0);
   }
-  const std::string value = is_infinite(report, info.id) ? "infinity" : shown(info, metric.at("value"));
-  return row(info.title, metric, value, unit, remark(info, metric));
+  return rows;
+}
+
+std::string value_rows(const Json& report, const MetricInfo& info, const Json& metric, const TableLayout& layout) {
+  if (metric.contains("per_threshold")) return threshold_rows(info, metric, layout);
+  if (metric.contains("per_range")) return range_rows(info, metric);
+  TableRow row = row_of(info.title, metric, shown_unit(info));
+  row.value = is_infinite(report, info.id) ? "infinity" : shown(info, metric.at("value"));
+  if (layout.levels) row.levels = level_columns(info, metric);
+  row.remark = remark(info, metric);
+  const std::string phases = phases_text(metric);
+  if (!row.remark.empty() && !phases.empty()) row.remark += "; ";
+  row.remark += phases;
+  return format_row(row, layout.width);
 }
 
 /// The thresholds above the columns of the metrics that have one value for each.
@@ -152,22 +177,43 @@ std::string alias_lines(const std::string& prefix, const Json& value) {
   return fmt::format(" {} {}\n", padded(prefix, 41), text);
 }
 
-}  // namespace
+/// Names of the columns beside a group's name, where its metrics have levels.
+std::string group_line(const Json& metrics, std::string_view group, const TableLayout& layout) {
+  const std::string name(group == "mme" ? "entropy" : group);
+  const auto in_columns = [&](const Metric* known) {
+    const MetricInfo& info = known->info;
+    return info.group == group && !info.per_threshold && metrics.contains(info.id) && has_levels(metrics.at(info.id));
+  };
+  if (!layout.levels || std::ranges::none_of(metric_list(), in_columns)) return fmt::format("\n{}\n", name);
+  std::string heading = format_row({.title = {}, .value = "value", .levels = level_heading()}, 0);
+  return fmt::format("\n{}", heading.replace(0, name.size(), name));
+}
 
-std::string format_table(const Json& report) {
-  std::string table = input_lines(report.at("inputs"));
+std::string metric_lines(const Json& report, const TableLayout& layout) {
+  const Json& metrics = report.at("metrics");
+  std::string lines;
   std::string_view group;
   bool thresholds_shown = false;
   for (const Metric* known : metric_list()) {
     const MetricInfo& info = known->info;
-    if (!report.at("metrics").contains(info.id)) continue;
-    if (info.group != group) table += fmt::format("\n{}\n", info.group == "mme" ? "entropy" : info.group);
+    if (!metrics.contains(info.id)) continue;
+    if (info.group != group) lines += group_line(metrics, info.group, layout);
     group = info.group;
-    const Json& metric = report.at("metrics").at(info.id);
-    if (info.per_threshold && !thresholds_shown) table += threshold_line(metric);
+    const Json& metric = metrics.at(info.id);
+    if (info.per_threshold && !thresholds_shown) lines += threshold_line(metric);
     thresholds_shown = info.per_threshold;
-    table += value_rows(report, info, metric);
+    lines += value_rows(report, info, metric, layout);
   }
+  return lines;
+}
+
+}  // namespace
+
+std::string format_table(const Json& report, const TableLayout& asked) {
+  TableLayout layout = asked;
+  layout.levels = asked.levels && std::ranges::any_of(report.at("metrics"), has_levels);
+  std::string table = input_lines(report.at("inputs")) + metric_lines(report, layout);
+  if (layout.levels) table += missing_level_lines(report);
   if (report.contains("aliases")) {
     for (const auto& [tool, record] : report.at("aliases").items())
       table += fmt::format("\nas {}\n{}", tool, alias_lines("", record));

@@ -71,5 +71,16 @@ export function outlineFaults(page) {
   });
 }
 
+/** Contrast of two CSS colors rgb(...), as WCAG defines it. */
+export function contrast(a, b) {
+  const luminance = (text) => {
+    const channels = text.match(/\d+(\.\d+)?/g).slice(0, 3).map((value) => Number(value) / 255);
+    const linear = channels.map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2];
+  };
+  const [light, dark] = [luminance(a), luminance(b)].sort((x, y) => y - x);
+  return (light + 0.05) / (dark + 0.05);
+}
+
 export const colorAt = ({ data, width }, x, y) => [...data.subarray(4 * (y * width + x), 4 * (y * width + x) + 3)];
 export const colorOffset = (a, b) => Math.max(...a.map((value, k) => Math.abs(value - b[k])));

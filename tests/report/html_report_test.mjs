@@ -8,7 +8,7 @@ import { tmpdir } from 'node:os';
 import { basename, dirname, join, resolve } from 'node:path';
 import { after, before, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
-import { colorAt, colorOffset, launch, outlineFaults, pixels as pixelsOf, source } from './browser.mjs';
+import { colorAt, colorOffset, contrast, launch, outlineFaults, pixels as pixelsOf, source } from './browser.mjs';
 
 function makeReport() {
   const program = process.env.CMAP_EVAL;
@@ -408,17 +408,6 @@ test('the screenshot is a PNG that is not empty', async () => {
   assert.equal(bytes.subarray(1, 4).toString('latin1'), 'PNG');
   assert.ok(bytes.length > 10_000, `${bytes.length} bytes`);
 });
-
-/** Contrast of two CSS colors rgb(...), as WCAG defines it. */
-function contrast(a, b) {
-  const luminance = (text) => {
-    const channels = text.match(/\d+(\.\d+)?/g).slice(0, 3).map((value) => Number(value) / 255);
-    const linear = channels.map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
-    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2];
-  };
-  const [light, dark] = [luminance(a), luminance(b)].sort((x, y) => y - x);
-  return (light + 0.05) / (dark + 0.05);
-}
 
 async function checkContrast(scheme, opened) {
   const samples = await opened.evaluate(() => {

@@ -160,7 +160,7 @@ class Results(CmapEval):
         """From the root of the source, or a folder that looks like it."""
         help_text = self.run_program("--help").stdout.decode()
         examples = [line for line in help_text.splitlines() if line.startswith("  cmap_eval ")]
-        self.assertEqual(len(examples), 2, "a pair and one map")
+        self.assertEqual(len(examples), 3, "a pair, one map, and what the numbers are worth")
         (self.folder / "data_samples").symlink_to(SOURCE / "data_samples")
         (self.folder / "bin").mkdir()
         (self.folder / "bin/cmap_eval").symlink_to(PROGRAM)
@@ -179,7 +179,7 @@ class Results(CmapEval):
     def test_the_help_names_every_option_and_exit_code(self):
         help_text = self.run_program("--help").stdout.decode()
         parameters = self.evaluate(self.reference, self.estimate)["parameters"]
-        for option in (*parameters, "output", "format", "config", "preset", "transform", "require", "export-errors",
+        for option in (*parameters, "output", "format", "levels", "config", "preset", "transform", "require", "export-errors",
                        "export-reference-errors", "threads", "quiet", "version"):
             self.assertIn(f" --{option} ", help_text.replace("\n", " ").replace(",", " "))
         for code in ("0 done", "1 a --require", "2 wrong usage", "3 an input", "4 the inputs", "70 internal"):
@@ -351,7 +351,19 @@ class Results(CmapEval):
                 place[path[-1]] = value
             return report
 
+        good["metrics"]["chamfer"]["floor"] = {"value": 0.2, "se": 0.001, "n": 3}
+        good["metrics"]["color_distance"]["skill"] = {"value": None, "reason": "the floor is no better than chance"}
+        band = {"n": 1, "mean": 0.1, "std": 0, "min": 0.1, "max": 0.1, "values": [0.1, None]}
+        good["metrics"]["average_wasserstein"]["phases"] = band
+        good["metrics"]["accuracy"]["per_threshold"][0]["floor"] = {"value": 0.2, "se": 0.001, "n": 3}
+        self.check_report(json.dumps(good))
         for report in (
+            broken("metrics", "chamfer", "floor", "value"),
+            broken("metrics", "chamfer", "floor", "se", value=-0.1),
+            broken("metrics", "color_distance", "skill", "reason"),
+            broken("metrics", "average_wasserstein", "phases", "values"),
+            broken("metrics", "average_wasserstein", "phases", "values", value=[]),
+            broken("metrics", "accuracy", "per_threshold", 0, "floor", value=0.2),
             broken("schema", value="cmap.report/1"),
             broken("extra", value=1),
             broken("warnings"),

@@ -139,6 +139,7 @@ CHECKS = {
         reports("report.json", lambda r: [r["inputs"][m]["format"][:3] for m in ("reference", "estimate")] == ["LAS", "PCD"])
     ],
     "cmap_eval map.ply": [says("color consistency", "mean map entropy", "point spacing")],
+    "cmap_eval ref.ply est.ply --levels": [says(r"(?m)^color +value +floor +chance +skill$")],
     "cmap_eval ref.ply est.ply --preset indoor": [says("CD ")],
     "cmap_eval ref.ply est.ply --config mine.json": [again("--format json > a.json", code=0), reports("a.json", lambda r: (
         r["parameters"]["lcr-radius"], r["parameters"]["lcr-tau"]) == (0.1, 0.05))],

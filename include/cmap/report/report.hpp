@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -42,8 +43,17 @@ nlohmann::ordered_json make_report(const InputDescription& reference, const Inpu
 nlohmann::ordered_json make_report(const InputDescription& map, const MapEvaluation& evaluation,
                                    const RunDescription& run);
 
+/// How wide a table may be, and what stands beside its values.
+struct TableLayout {
+  bool levels = false;    ///< floor, chance and skill as columns, where the report has them
+  std::size_t width = 0;  ///< characters of a line, which remarks beside levels keep to; 0: of any length
+};
+
+/// From this width on levels leave room for remarks.
+inline constexpr std::size_t kWidthForLevels = 130;
+
 /// A report, of a pair or of one map, as a table for people: groups, symbols, values with their units and directions,
 /// warnings below.
-std::string format_table(const nlohmann::ordered_json& report);
+std::string format_table(const nlohmann::ordered_json& report, const TableLayout& layout = {});
 
 }  // namespace cmap

@@ -5,6 +5,8 @@ import { number, percent, short, unitText, withUnit } from './format';
 export interface Series {
   label: string;
   values: (number | null)[];
+  /** What is no measurement of this map. */
+  dashed?: boolean;
 }
 
 export interface ChartSpec {
@@ -108,8 +110,10 @@ function medianText(direction: Direction, width: number, unit: string): string {
   return median === undefined ? 'Half beyond all bins' : `Half within ${withUnit(short(median), unit)}`;
 }
 
+type RecallCurve = { tau: number[]; value: (number | null)[]; chance?: (number | null)[]; area?: number };
+
 function recallCurve(record: Json | undefined): ChartSpec[] {
-  const curve = record?.curve as { tau: number[]; value: (number | null)[]; area?: number } | undefined;
+  const curve = record?.curve as RecallCurve | undefined;
   if (!curve?.tau?.length) return [];
   const tau = (record!.parameters as Json | undefined)?.tau;
   return [
@@ -121,7 +125,10 @@ function recallCurve(record: Json | undefined): ChartSpec[] {
       yLabel: 'share recalled',
       kind: 'dots',
       x: curve.tau,
-      series: [{ label: 'LCR', values: curve.value }],
+      series: [
+        { label: 'LCR', values: curve.value },
+        ...(curve.chance ? [{ label: 'chance: its colors shuffled', values: curve.chance, dashed: true }] : []),
+      ],
       xEnd: Math.max(...curve.tau),
       yShare: true,
       ...(typeof tau === 'number' && { mark: { x: tau, label: `tau ${tau}` } }),

@@ -31,10 +31,11 @@ function axis(label: string, size: number, share: boolean): uPlot.Axis {
 }
 
 function series(spec: ChartSpec): uPlot.Series[] {
-  return spec.series.map((_, i) => ({
+  return spec.series.map(({ dashed }, i) => ({
     stroke: () => themeColor(seriesColor(i)),
     width: 1.75,
-    points: { show: spec.kind === 'dots', size: 6, fill: () => themeColor(seriesColor(i)) },
+    ...(dashed && { dash: [6, 5] }),
+    points: { show: spec.kind === 'dots' && !dashed, size: 6, fill: () => themeColor(seriesColor(i)) },
     ...(spec.kind === 'steps' && {
       paths: uPlot.paths.stepped!({ align: 1 }),
       fill: () => `${themeColor(seriesColor(i))}22`,
@@ -66,9 +67,9 @@ function drawMark(spec: ChartSpec): (chart: uPlot) => void {
 function makeReadout(spec: ChartSpec): { node: HTMLElement; show: (chart: uPlot) => void } {
   const values = spec.series.map(() => element('span', { class: 'number' }));
   const place = element('span', { class: 'place' });
-  const items = spec.series.map(({ label }, i) => {
-    const line = element('span', { class: 'line' });
-    line.style.background = `var(--${seriesColor(i)})`;
+  const items = spec.series.map(({ label, dashed }, i) => {
+    const line = element('span', { class: dashed ? 'line dashed' : 'line' });
+    line.style.borderColor = `var(--${seriesColor(i)})`;
     return element('span', { class: 'item' }, line, label, ' ', values[i]);
   });
   const show = (chart: uPlot) => {
@@ -139,8 +140,10 @@ function showChart(grid: HTMLElement, spec: ChartSpec): void {
   onThemeChange(() => chart.redraw());
 }
 
-export function showCharts(section: HTMLElement, specs: ChartSpec[]): void {
+/** The charts, and after those figures that are none. */
+export function showCharts(section: HTMLElement, specs: ChartSpec[], figures: HTMLElement[]): void {
   const grid = element('div', { class: 'chart-grid' });
   section.append(grid);
   for (const spec of specs) showChart(grid, spec);
+  grid.append(...figures);
 }

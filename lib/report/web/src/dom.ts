@@ -17,6 +17,16 @@ export function element<K extends keyof HTMLElementTagNameMap>(
   return made;
 }
 
+const svg = 'http://www.w3.org/2000/svg';
+
+/** A part of a drawing. */
+export function vector(tag: string, attributes: Attributes = {}, ...children: Node[]): Element {
+  const made = document.createElementNS(svg, tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, String(value));
+  made.append(...children);
+  return made;
+}
+
 export function button(label: string, attributes: Attributes, onClick: () => void): HTMLButtonElement {
   const made = element('button', { type: 'button', ...attributes }, label);
   made.addEventListener('click', onClick);

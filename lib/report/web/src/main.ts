@@ -5,9 +5,12 @@ import type { Page, Report } from './contract';
 import { readMaps, readPage, readReport, reportText } from './data';
 import { element, message, section } from './dom';
 import { showHeader } from './header';
+import { levelNotes } from './level_notes';
 import { showMap } from './map_view';
 import { metricRows } from './records';
+import { phasesBlock } from './phases';
 import { showRun } from './run_info';
+import { skillMap } from './skill_map';
 import './style.css';
 import { metricTable } from './table';
 import { followTheme } from './theme';
@@ -46,14 +49,19 @@ async function showReport(report: Report, page: Page | undefined): Promise<void>
   const frame = page && showFirstFrame(page);
   await fill('metrics', (place) => {
     const caption = report.inputs.reference ? 'Metrics of the estimate against the reference' : 'Metrics of the map';
-    const table = metricTable(metricRows(report, page), caption);
-    place.append(element('div', { class: 'table-frame' }, table));
+    const rows = metricRows(report, page);
+    place.append(element('div', { class: 'table-frame' }, metricTable(rows, caption)));
+    const notes = levelNotes(rows);
+    if (notes) place.append(notes);
+    const phases = phasesBlock(report, rows.filter(({ first }) => first).map(({ metric }) => metric));
+    if (phases) place.append(phases);
   });
   // The map comes first. A page in the background draws no frame: there the rest does not wait for one.
   await Promise.race([frame, new Promise((resolve) => setTimeout(resolve, 2000))]);
   await fill('charts', (place) => {
     const charts = chartSpecs(report, page?.distributions ?? []);
-    if (charts.length > 0) showCharts(place, charts);
+    const figures = [skillMap(report)].filter((figure) => figure !== undefined);
+    if (charts.length + figures.length > 0) showCharts(place, charts, figures);
     else place.hidden = true; // as of one map
   });
   await fill('run', (place) => showRun(place, report));

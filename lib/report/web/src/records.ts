@@ -1,6 +1,7 @@
 // The metrics of a report as rows of a table: one per value, so that of per-threshold metrics one per threshold.
 import type { Json, JsonValue, MetricText, Page, Report } from './contract';
 import { number, short, withUnit } from './format';
+import { type Levels, levelFacts, levelReasons, levelsOf, shownAsLevels } from './levels';
 
 export interface Metric extends MetricText {
   symbol: string;
@@ -22,6 +23,9 @@ export interface MetricRow {
   infinite: boolean;
   /** Why there is no value. */
   reason: string;
+  levels: Levels;
+  /** Why levels have no value. */
+  levelReasons: string[];
   facts: [string, JsonValue][];
 }
 
@@ -30,9 +34,10 @@ const shownElsewhere = new Set(['value', 'unit', 'better', 'symbol', 'per_thresh
 const isObject = (value: JsonValue): value is Json =>
   typeof value === 'object' && value !== null && !Array.isArray(value);
 
-/** Members of a record and of records within it, by readable names. */
+/** Members of a record and of records within it, by readable names; levels have places of their own. */
 export function flatten(record: Json, prefix = ''): [string, JsonValue][] {
   return Object.entries(record).flatMap(([key, value]): [string, JsonValue][] => {
+    if (shownAsLevels.has(key)) return [];
     const name = prefix + key.replaceAll('_', ' ');
     if (isObject(value)) return flatten(value, `${name}, `);
     if (Array.isArray(value) && value.some(isObject)) {
@@ -113,6 +118,7 @@ export function metricRows(report: Report, page: Page | undefined): MetricRow[] 
     entries(record).forEach(({ entry, qualifier, key }, i) => {
       const value = typeof entry.value === 'number' ? entry.value : null;
       const common = entry === record ? [] : facts(record);
+      const levels = levelsOf(entry);
       const reason = value === null ? (warning?.message ?? 'The maps do not support this value.') : '';
       rows.push({
         metric,
@@ -123,7 +129,9 @@ export function metricRows(report: Report, page: Page | undefined): MetricRow[] 
         value,
         infinite: value === null && warning?.id === `${id}_infinite`,
         reason,
-        facts: [...fairness(report, id, entry.threshold_m), ...facts(entry), ...common],
+        levels,
+        levelReasons: levelReasons(levels),
+        facts: [...levelFacts(levels), ...fairness(report, id, entry.threshold_m), ...facts(entry), ...common],
       });
     });
   }
