@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
 #include <sstream>
 #include <variant>
@@ -23,7 +24,8 @@ namespace {
 constexpr const char* kDescription =
     "Draws a point-cloud map, or an estimated map beside its reference with what is wrong with it.\n"
     "Needs no display and no GPU; --interactive opens a window in which h shows the keys.\n"
-    "Layers: reference, estimate, lcr, color-distance, distance, delta-e, ccs, wasserstein, density, height.";
+    "Layers: reference, estimate, lcr, color-distance, distance, delta-e, ccs, color-wasserstein, wasserstein, "
+    "density, height.";
 
 constexpr const char* kExample =
     "Example:\n"
@@ -51,7 +53,9 @@ struct Arguments {
 /// Whether a picture depends on an option of the evaluation.
 bool is_drawn(std::string_view option) {
   if (option == "keep-noise" || option == "classes") return true;
-  return option.starts_with("lcr-") ? option != "lcr-curve" : option.starts_with("ccs-") || option.starts_with("awd-");
+  if (option == "lcr-curve" || option == "ccs-phases") return false;
+  constexpr std::string_view kOfLayers[]{"lcr-", "ccs-", "cw-", "awd-"};
+  return std::ranges::any_of(kOfLayers, [&](std::string_view start) { return option.starts_with(start); });
 }
 
 void add_drawing_options(cmap::CommandLine& line, Arguments& a) {

@@ -14,6 +14,7 @@
 #include "cmap/geometry/order_statistics.hpp"
 #include "cmap/geometry/voxel_map.hpp"
 #include "cmap/metrics/color_consistency.hpp"
+#include "cmap/metrics/color_gaussians.hpp"
 #include "cmap/metrics/wasserstein.hpp"
 
 namespace cmap {
@@ -192,6 +193,18 @@ Layer color_distance_layer(const EvaluatedPair& evaluation, const LayerOptions& 
                   [&](std::size_t slot) { return pairs.color_distance(slot); });
 }
 
+Layer color_wasserstein_layer(const EvaluatedPair& evaluation, const LayerOptions& options) {
+  require_color(evaluation, "color-wasserstein");
+  const EvaluationOptions& o = evaluation.options;
+  VoxelValues voxels(evaluation.pair.estimate, o.cw_voxel_m);
+  const PhaseOptions grid{.voxel_m = o.cw_voxel_m, .min_points = o.cw_min_points};
+  for (const ColoredVoxel& voxel : color_wasserstein(evaluation.pair, grid).voxels) {
+    voxels.set(voxel.index, voxel.distance);
+  }
+  return voxel_layer(evaluation.pair.estimate, fmt::format("Color Wasserstein in voxels of {} m", o.cw_voxel_m),
+                     ColorMap::kInferno, "unit RGB", options, voxels);
+}
+
 Layer delta_e_layer(const EvaluatedPair& evaluation, const LayerOptions& options) {
   require_color(evaluation, "delta-e");
   const NearestPairs pairs = evaluation.pair.estimate_to_reference();
@@ -207,6 +220,7 @@ Layer layer_of(const EvaluatedPair& evaluation, std::string_view name, const Lay
   if (name == "distance") return distance_layer(evaluation, options);
   if (name == "delta-e") return delta_e_layer(evaluation, options);
   if (name == "ccs") return consistency_layer(evaluation, options);
+  if (name == "color-wasserstein") return color_wasserstein_layer(evaluation, options);
   if (name == "wasserstein") return wasserstein_layer(evaluation, options);
   if (name == "density") return density_layer(evaluation, options);
   return height_layer(evaluation.pair.estimate, "Height", options);
@@ -215,8 +229,9 @@ Layer layer_of(const EvaluatedPair& evaluation, std::string_view name, const Lay
 }  // namespace
 
 const std::vector<std::string>& layer_names() {
-  static const std::vector<std::string> names{"reference", "estimate", "lcr",         "color-distance", "distance",
-                                              "delta-e",   "ccs",      "wasserstein", "density",        "height"};
+  static const std::vector<std::string> names{"reference",   "estimate", "lcr",   "color-distance",
+                                              "distance",    "delta-e",  "ccs",   "color-wasserstein",
+                                              "wasserstein", "density",  "height"};
   return names;
 }
 
@@ -233,6 +248,7 @@ std::string_view metric_of_layer(std::string_view name) {
   if (name == "distance") return "chamfer";
   if (name == "delta-e") return "delta_e";
   if (name == "ccs") return "color_consistency";
+  if (name == "color-wasserstein") return "color_wasserstein";
   if (name == "wasserstein") return "average_wasserstein";
   return "";
 }

@@ -73,8 +73,8 @@ TEST(Options, DefaultsAreThoseOfTheDefinitions) {
   const Json defaults = to_json(EvaluationOptions{});
   const Json expected = parsed(R"({
     "thresholds": [0.2, 0.1, 0.08, 0.05, 0.01], "overlap-distance": 1.0, "lcr-tau": 0.1, "lcr-radius": 0.5,
-    "ccs-voxel": 0.1, "ccs-singletons": "zero", "ccs-min-points": 2, "awd-voxel": 3.0, "awd-min-points": 100,
-    "scs-radius": 5, "mme-radius": 0.1, "mme-min-neighbors": 10, "align": "none"})");
+    "ccs-voxel": 0.1, "ccs-singletons": "zero", "ccs-min-points": 2, "cw-voxel": 1.0, "cw-min-points": 10,
+    "awd-voxel": 3.0, "awd-min-points": 100, "scs-radius": 5, "grid-phases": "8", "no-levels": false, "mme-radius": 0.1, "mme-min-neighbors": 10, "align": "none"})");
   for (const auto& [name, value] : expected.items()) EXPECT_EQ(defaults.at(name), value) << name;
 }
 

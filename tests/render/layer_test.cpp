@@ -93,6 +93,9 @@ TEST(MakeLayer, VoxelsPaintTheirPoints) {
   const Layer distance = make_layer(evaluation, "wasserstein", {{{0.0, 0.5}}, std::nullopt, false});
   EXPECT_EQ(color_at_x(distance, 0.75), color_table(ColorMap::kViridis)[128]);  // 0.25 m of 0.5 m
   EXPECT_EQ(color_at_x(distance, 5.5), none);
+  const Layer colors_of_voxels = make_layer(evaluation, "color-wasserstein", {{{0.0, 0.5}}, std::nullopt, false});
+  EXPECT_EQ(color_at_x(colors_of_voxels, 0.75), color_table(ColorMap::kInferno)[0]);  // the same colors
+  EXPECT_EQ(color_at_x(colors_of_voxels, 5.5), none);
   const Layer density = make_layer(evaluation, "density", {{{0.0, 2.0}}, std::nullopt, false});
   EXPECT_EQ(color_at_x(density, 0.75), color_table(ColorMap::kViridis)[255]);  // two points of two
   EXPECT_EQ(color_at_x(density, 5.5), color_table(ColorMap::kViridis)[128]);

@@ -53,8 +53,8 @@ struct LayerOptions {
   bool logarithmic = false;
 };
 
-/// Names: reference and estimate (their own colors), lcr, color-distance, distance, delta-e, ccs and
-/// wasserstein and density (by voxel), height.
+/// Names: reference and estimate (their own colors), lcr, color-distance, distance, delta-e, ccs,
+/// color-wasserstein, wasserstein and density (by voxel), height.
 const std::vector<std::string>& layer_names();
 
 /// Throws UsageError on an unknown name.
