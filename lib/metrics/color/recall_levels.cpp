@@ -61,25 +61,50 @@ Level share_right(std::span<const double> best, double tau) {
   return share_level(static_cast<std::uint64_t>(n), best.size());
 }
 
-/// The estimate's colors as points, at most 10,000 of them, for counting those around a color.
-Bvh color_index(const std::vector<Eigen::Vector3d>& colors) {
-  constexpr std::size_t kMost = 10'000;
+/// Colors, a channel after the other.
+struct ColorList {
+  std::vector<float> r, g, b;
+};
+
+/// At most 8192 of them, evenly spread along a curve through the space of colors: of a ball's share such a sample knows
+/// far more than one drawn at random.
+ColorList spread_colors(const std::vector<Eigen::Vector3d>& colors) {
+  constexpr std::size_t kMost = 8192;
+  if (colors.empty()) return {};
   PointCloud cloud;
-  for (const std::size_t i : sampled_indices(colors.size(), kMost)) {
-    cloud.positions.push_back(colors[i].cast<float>());
+  for (const Eigen::Vector3d& color : colors) cloud.positions.push_back(color.cast<float>());
+  const PointBlocks sorted = sort_points(cloud);
+  ColorList list;
+  for (const std::size_t slot : sampled_indices(sorted.size, kMost)) {
+    const Eigen::Vector3f color = sorted.offset(slot);
+    list.r.push_back(color.x());
+    list.g.push_back(color.y());
+    list.b.push_back(color.z());
   }
-  return Bvh(sort_points(cloud));
+  return list;
+}
+
+/// How many of them are no farther (squared, 1/255) than `right` from a color.
+int count_similar(const ColorList& colors, const Eigen::Vector3f& color, float right) {
+  const float *r = colors.r.data(), *g = colors.g.data(), *b = colors.b.data();
+  const auto n = static_cast<int>(colors.r.size());
+  int n_similar = 0;
+  for (int i = 0; i < n; ++i) {
+    const float dr = r[i] - color.x(), dg = g[i] - color.y(), db = b[i] - color.z();
+    n_similar += dr * dr + dg * dg + db * db <= right ? 1 : 0;
+  }
+  return n_similar;
 }
 
 /// The share of the estimate's colors within 3 tau of each point's.
-std::vector<double> similar_shares(const IndexedMap& reference, std::span<const std::uint32_t> slots, const Bvh& colors,
-                                   double tau) {
-  const PointsWithin similar(colors, std::sqrt(static_cast<double>(right_color_limit(tau))), 0.0);
+std::vector<double> similar_shares(const IndexedMap& reference, std::span<const std::uint32_t> slots,
+                                   const ColorList& colors, double tau) {
+  const float right = right_color_limit(tau);
   std::vector<double> shares(slots.size());
   parallel_chunks(slots.size(), kQueryChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const std::uint64_t n = similar.count(reference.color(slots[i]).cast<float>());
-      shares[i] = static_cast<double>(n) / static_cast<double>(colors.points.size);
+      const int n = count_similar(colors, color_at(reference.colors, slots[i]), right);
+      shares[i] = static_cast<double>(n) / static_cast<double>(colors.r.size());
     }
   });
   return shares;
@@ -114,7 +139,7 @@ class RecallLevels {
         taus_(taus),
         of_floor_(colored_slots(levels, samples.floor)),
         of_chance_(colored_slots(levels, samples.chance)) {
-    const Bvh colors = color_index(levels.estimate_colors());
+    const ColorList colors = spread_colors(levels.estimate_colors());
     for (const double tau : taus) shares_.push_back(similar_shares(reference_, of_chance_, colors, tau));
   }
 
