@@ -6,7 +6,7 @@
 #include "align/towns.hpp"
 
 namespace cmap {
-namespace {
+namespace align_test {
 
 using ::testing::HasSubstr;
 
@@ -76,5 +76,5 @@ TEST(AlignmentJson, HoldsEverything) {
   EXPECT_EQ(json["warnings"][0], "w");
 }
 
-}  // namespace
+}  // namespace align_test
 }  // namespace cmap

@@ -3,7 +3,7 @@
 #include "cmap/align/align.hpp"
 
 namespace cmap {
-namespace {
+namespace gicp_test {
 
 /// Of two samples of the same surfaces no point meets its like: matches of points pull along the surface, those of
 /// planes hardly.
@@ -18,5 +18,5 @@ TEST(Gicp, IsNearerThanPointsOnOtherSamplesOfASurface) {
   EXPECT_LT(error_m("gicp"), 0.5 * error_m("icp"));
 }
 
-}  // namespace
+}  // namespace gicp_test
 }  // namespace cmap

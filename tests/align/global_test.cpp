@@ -9,7 +9,7 @@
 #include "features.hpp"
 
 namespace cmap {
-namespace {
+namespace global_test {
 
 using ::testing::HasSubstr;
 
@@ -196,5 +196,5 @@ TEST(Global, RealAerialMapWithUnknownScale) {
   EXPECT_GE(recovered, n * 98 / 100) << "of " << n;
 }
 
-}  // namespace
+}  // namespace global_test
 }  // namespace cmap

@@ -5,7 +5,7 @@
 #include "cmap/core/execution.hpp"
 
 namespace cmap {
-namespace {
+namespace icp_test {
 
 using ::testing::HasSubstr;
 
@@ -250,5 +250,5 @@ TEST(RobustKernelTest, ByHand) {
   EXPECT_EQ(robust_weight(RobustKernel::kCauchy, 3.0, 1.0), 0.1);
 }
 
-}  // namespace
+}  // namespace icp_test
 }  // namespace cmap

@@ -2,7 +2,7 @@
 #include "cmap/align/align.hpp"
 
 namespace cmap {
-namespace {
+namespace plane_test {
 
 /// Walls across x, y and z that do not touch.
 PointCloud three_walls(std::size_t n) {
@@ -32,5 +32,5 @@ TEST(Plane, OneStepFindsAShiftOfFlatWalls) {
       << "points hold each other along the walls";
 }
 
-}  // namespace
+}  // namespace plane_test
 }  // namespace cmap

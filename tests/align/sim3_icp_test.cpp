@@ -5,7 +5,7 @@
 #include "cmap/core/execution.hpp"
 
 namespace cmap {
-namespace {
+namespace sim3_icp_test {
 
 using test::town;
 using ::testing::HasSubstr;
@@ -157,5 +157,5 @@ TEST(Sim3Icp, RefusesWrongOptionsAndWeights) {
   EXPECT_THROW(sim3_icp(cloud, cloud, shear, {}), UnsupportedError);
 }
 
-}  // namespace
+}  // namespace sim3_icp_test
 }  // namespace cmap

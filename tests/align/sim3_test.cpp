@@ -3,7 +3,7 @@
 #include "cmap/align/align.hpp"
 
 namespace cmap {
-namespace {
+namespace sim3_test {
 
 using ::testing::StartsWith;
 
@@ -26,5 +26,5 @@ TEST(Sim3, RefusesWhereTheStartWouldBeKept) {
               StartsWith("no overlap"));
 }
 
-}  // namespace
+}  // namespace sim3_test
 }  // namespace cmap

@@ -6,7 +6,7 @@
 #include "cmap/io/point_cloud_file.hpp"
 
 namespace cmap {
-namespace {
+namespace symmetric_test {
 
 using ::testing::HasSubstr;
 
@@ -163,5 +163,5 @@ TEST(Symmetric, ConvergesInATownWherePlanesDo) {
   EXPECT_GE(of_planes, 8);
 }
 
-}  // namespace
+}  // namespace symmetric_test
 }  // namespace cmap

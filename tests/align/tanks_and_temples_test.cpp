@@ -4,7 +4,7 @@
 #include "align/towns.hpp"
 
 namespace cmap {
-namespace {
+namespace tanks_and_temples_test {
 
 using ::testing::HasSubstr;
 
@@ -85,5 +85,5 @@ TEST(TanksAndTemples, RefusesWhatCannotBe) {
               HasSubstr("no overlap"));
 }
 
-}  // namespace
+}  // namespace tanks_and_temples_test
 }  // namespace cmap

@@ -3,7 +3,7 @@
 #include "align/align_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace trajectory_test {
 
 using ::testing::HasSubstr;
 
@@ -106,5 +106,5 @@ TEST(AlignTrajectories, NearlyStraightPathsAreFlagged) {
   EXPECT_THAT(found.warnings[0], HasSubstr("weakly determined"));
 }
 
-}  // namespace
+}  // namespace trajectory_test
 }  // namespace cmap

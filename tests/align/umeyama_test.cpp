@@ -4,7 +4,7 @@
 #include "cmap/core/execution.hpp"
 
 namespace cmap {
-namespace {
+namespace umeyama_test {
 
 using ::testing::HasSubstr;
 using Points = std::vector<Eigen::Vector3d>;
@@ -240,5 +240,5 @@ TEST(SimilarityTest, RefusesOtherMatrices) {
   EXPECT_THAT(test::refusal_of<UnsupportedError>([&] { similarity_from(shear); }), HasSubstr("deviates by"));
 }
 
-}  // namespace
+}  // namespace umeyama_test
 }  // namespace cmap

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace cmap {
-namespace {
+namespace charts_test {
 
 using ::testing::Contains;
 using ::testing::HasSubstr;
@@ -130,5 +130,5 @@ TEST(Svg, HasTheShapesAndEscapesTheTexts) {
   EXPECT_THAT(text, Not(HasSubstr("<a>")));
 }
 
-}  // namespace
+}  // namespace charts_test
 }  // namespace cmap

@@ -13,7 +13,7 @@
 #include "core/refusal.hpp"
 
 namespace cmap {
-namespace {
+namespace child_process_test {
 
 using test::refusal_of;
 
@@ -46,5 +46,5 @@ TEST(RunApart, AStopThatTheWorkRequestsEndsTheCaller) {
                Interrupted);
 }
 
-}  // namespace
+}  // namespace child_process_test
 }  // namespace cmap

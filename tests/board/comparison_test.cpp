@@ -4,7 +4,7 @@
 #include "report/report_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace comparison_test {
 
 using test::options_for;
 using test::painted_sheet;
@@ -502,5 +502,5 @@ TEST(FormatComparison, NamesCannotBreakThePage) {
   EXPECT_THAT(page, HasSubstr("&lt;script&gt;alert(1)"));
 }
 
-}  // namespace
+}  // namespace comparison_test
 }  // namespace cmap

@@ -3,7 +3,7 @@
 #include "report/report_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace distinguishable_test {
 
 using test::options_for;
 using test::report_of;
@@ -145,5 +145,5 @@ TEST(RankingNotes, SayWhereIntervalsComeFromFewBlocks) {
   EXPECT_TRUE(ranking_notes({}, {}).empty());
 }
 
-}  // namespace
+}  // namespace distinguishable_test
 }  // namespace cmap

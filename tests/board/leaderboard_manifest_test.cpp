@@ -4,7 +4,7 @@
 #include "report/report_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace leaderboard_manifest_test {
 
 using test::refusal_of;
 using ::testing::EndsWith;
@@ -125,5 +125,5 @@ TEST_F(ManifestTest, BadPublishedNumbers) {
             "spatial_consistency");
 }
 
-}  // namespace
+}  // namespace leaderboard_manifest_test
 }  // namespace cmap

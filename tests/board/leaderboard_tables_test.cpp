@@ -7,7 +7,7 @@
 #include "report/report_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace leaderboard_tables_test {
 
 using test::painted_sheet;
 using test::report_of;
@@ -268,5 +268,5 @@ TEST_F(PairFolderTest, WhatKilledRunsLeftIsRemoved) {
   EXPECT_TRUE(std::filesystem::exists(path_ / ".mine.tmp"));
 }
 
-}  // namespace
+}  // namespace leaderboard_tables_test
 }  // namespace cmap

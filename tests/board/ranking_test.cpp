@@ -7,7 +7,7 @@
 #include <map>
 
 namespace cmap {
-namespace {
+namespace ranking_test {
 
 constexpr Verdict kApart = Verdict::kDistinguishable, kAlike = Verdict::kNotDistinguishable,
                   kUntested = Verdict::kNoBootstrap;
@@ -115,5 +115,5 @@ TEST(RankingCounts, SayHowManyAreDistinguishable) {
   EXPECT_THAT(all.text(""), ::testing::StartsWith("4 of 10 rankings distinguishable, 2 not, "));
 }
 
-}  // namespace
+}  // namespace ranking_test
 }  // namespace cmap

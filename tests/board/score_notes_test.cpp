@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace cmap {
-namespace {
+namespace score_notes_test {
 
 using ::testing::ElementsAre;
 
@@ -67,5 +67,5 @@ TEST(MissingNotes, OneForEachReason) {
                           "no skill of color distance: the estimate is gray (a, d)"));
 }
 
-}  // namespace
+}  // namespace score_notes_test
 }  // namespace cmap

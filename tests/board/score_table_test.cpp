@@ -6,7 +6,7 @@
 #include <sstream>
 
 namespace cmap {
-namespace {
+namespace score_table_test {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -166,5 +166,5 @@ TEST(Escape, LinesStayLines) {
       << "nothing turns the direction of writing around";
 }
 
-}  // namespace
+}  // namespace score_table_test
 }  // namespace cmap

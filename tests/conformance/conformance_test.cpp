@@ -8,7 +8,7 @@
 #include "conformance/records.hpp"
 
 namespace cmap {
-namespace {
+namespace conformance_test {
 
 namespace fs = std::filesystem;
 using test::Json;
@@ -94,5 +94,5 @@ TEST(ConformanceSet, IsFound) {
   }
 }
 
-}  // namespace
+}  // namespace conformance_test
 }  // namespace cmap

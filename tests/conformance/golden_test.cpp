@@ -8,7 +8,7 @@
 #include "conformance/real_maps.hpp"
 
 namespace cmap::test {
-namespace {
+namespace golden_test {
 
 namespace fs = std::filesystem;
 
@@ -212,5 +212,5 @@ TEST_F(TumFr1, FlannAgreesExceptOnTies) {
               1e-12 + static_cast<double>(n_ties) * std::numbers::sqrt3 / n_points);
 }
 
-}  // namespace
+}  // namespace golden_test
 }  // namespace cmap::test

@@ -11,7 +11,7 @@
 #include "spatial/clouds.hpp"
 
 namespace cmap::test {
-namespace {
+namespace large_coordinates_test {
 
 namespace fs = std::filesystem;
 
@@ -175,5 +175,5 @@ TEST(LargeCoordinates, TheStadiumScoresTheSameFarAway) {
   expect_same_scores(pair, through_double_ply(pair, kShift_m), kStadiumOptions, "stadium farther away, from doubles");
 }
 
-}  // namespace
+}  // namespace large_coordinates_test
 }  // namespace cmap::test

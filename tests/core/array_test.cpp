@@ -8,7 +8,7 @@
 #include <string>
 
 namespace cmap {
-namespace {
+namespace array_test {
 
 constexpr std::size_t kCacheLine = 64;
 constexpr std::size_t kMiB = std::size_t{1} << 20;
@@ -98,5 +98,5 @@ TEST(LargeAllocator, CountsThatOverflowAreRefused) {
   EXPECT_THROW(allocator.deallocate(allocator.allocate(kMaxSize / 8 + 2), 0), std::bad_array_new_length);
 }
 
-}  // namespace
+}  // namespace array_test
 }  // namespace cmap

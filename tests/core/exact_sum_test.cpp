@@ -10,7 +10,7 @@
 #include <vector>
 
 namespace cmap {
-namespace {
+namespace exact_sum_test {
 
 __extension__ using Wide = __int128;
 
@@ -141,5 +141,5 @@ TEST(ExactSum, WhatIsNoNumberIsRefused) {
   }
 }
 
-}  // namespace
+}  // namespace exact_sum_test
 }  // namespace cmap

@@ -15,7 +15,7 @@
 #include "cmap/core/parallel.hpp"
 
 namespace cmap {
-namespace {
+namespace execution_test {
 
 using ::testing::ElementsAre;
 constexpr int kThreads[] = {1, 2, 0};  // 0: all the machine has
@@ -163,5 +163,5 @@ TEST(Interrupted, IsAnErrorOfItsOwnExitCode) {
   EXPECT_EQ(OutputError("").exit_code(), ExitCode::kUsage);
 }
 
-}  // namespace
+}  // namespace execution_test
 }  // namespace cmap

@@ -11,7 +11,7 @@
 #include "core/modules/counter_module.hpp"
 
 namespace cmap {
-namespace {
+namespace loaded_module_test {
 
 using ::testing::AllOf;
 using testing::CounterTable;
@@ -79,5 +79,5 @@ TEST(LoadedModule, AFileThatIsNoLibraryNamesIt) {
   EXPECT_THAT(refusal<CounterTable>(__FILE__), AllOf(StartsWith("this build cannot count: "), HasSubstr(__FILE__)));
 }
 
-}  // namespace
+}  // namespace loaded_module_test
 }  // namespace cmap

@@ -9,7 +9,7 @@
 #include "core/refusal.hpp"
 
 namespace cmap {
-namespace {
+namespace options_test {
 
 using test::refusal_of;
 
@@ -71,5 +71,5 @@ TEST(EnumNames, NameValuesAndOnlyThose) {
   EXPECT_THAT(words_of(kPets), ::testing::ElementsAre("cat", "dog"));
 }
 
-}  // namespace
+}  // namespace options_test
 }  // namespace cmap

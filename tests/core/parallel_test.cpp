@@ -16,7 +16,7 @@
 #include "cmap/core/execution.hpp"
 
 namespace cmap {
-namespace {
+namespace parallel_test {
 
 using Chunk = std::pair<std::size_t, std::size_t>;
 constexpr int kThreads[] = {1, 2, 0};  // 0: all the machine has
@@ -157,5 +157,5 @@ TEST(OrderedSum, TakesAnyTypeThatAdds) {
   EXPECT_EQ(moments.sum, 5050u);
 }
 
-}  // namespace
+}  // namespace parallel_test
 }  // namespace cmap

@@ -6,7 +6,7 @@
 #include <thread>
 
 namespace cmap {
-namespace {
+namespace progress_test {
 
 TEST(ProgressLine, ShowsBarPercentageAndStage) {
   EXPECT_EQ(progress_line("reading", 0.0), "[                              ]   0 %  reading");
@@ -49,5 +49,5 @@ TEST(ProgressBar, IsSilentWhereStderrIsNoTerminal) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-}  // namespace
+}  // namespace progress_test
 }  // namespace cmap

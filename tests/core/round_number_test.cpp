@@ -5,7 +5,7 @@
 #include <limits>
 
 namespace cmap {
-namespace {
+namespace round_number_test {
 
 TEST(RoundNumberAbove, IsTheNextRoundNumber) {
   EXPECT_EQ(round_number_above(1.0), 1.0);
@@ -24,5 +24,5 @@ TEST(RoundNumberAbove, WithoutAPositiveValueItIsOne) {
   EXPECT_EQ(round_number_above(std::numeric_limits<double>::quiet_NaN()), 1.0);
 }
 
-}  // namespace
+}  // namespace round_number_test
 }  // namespace cmap

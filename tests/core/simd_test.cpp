@@ -9,7 +9,7 @@
 #include "cmap/core/error.hpp"
 
 namespace cmap {
-namespace {
+namespace simd_test {
 
 constexpr SimdLevel kLevels[] = {SimdLevel::kPlain, SimdLevel::kSse2, SimdLevel::kAvx2, SimdLevel::kAvx512};
 
@@ -73,5 +73,5 @@ TEST(SimdLevel, IsReadFromTheEnvironmentOnce) {
   unsetenv("CMAP_SIMD");
 }
 
-}  // namespace
+}  // namespace simd_test
 }  // namespace cmap

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace cmap {
-namespace {
+namespace spelling_test {
 
 TEST(EditDistance, CountsEveryKindOfChange) {
   EXPECT_EQ(edit_distance("accuracy", "accuracy"), 0U);
@@ -34,5 +34,5 @@ TEST(DidYouMean, IsSilentWhereNothingIsNear) {
   EXPECT_EQ(did_you_mean("AC", {}), "");
 }
 
-}  // namespace
+}  // namespace spelling_test
 }  // namespace cmap

@@ -11,7 +11,7 @@
 #include "eval/eval_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace bootstrap_test {
 
 using test::options_for;
 using test::refusal_of;
@@ -243,5 +243,5 @@ TEST(Bootstrap, NobodyAskedNothingIsThere) {
   EXPECT_FALSE(evaluation.unobserved.has_value());
 }
 
-}  // namespace
+}  // namespace bootstrap_test
 }  // namespace cmap

@@ -8,7 +8,7 @@
 #include "eval/hand_maps.hpp"
 
 namespace cmap {
-namespace {
+namespace evaluation_invariance_test {
 
 using Json = nlohmann::ordered_json;
 using test::gray_map;
@@ -99,5 +99,5 @@ TEST(EvaluationInvariance, NoRecordHoldsANumberThatIsNotFinite) {
   }
 }
 
-}  // namespace
+}  // namespace evaluation_invariance_test
 }  // namespace cmap

@@ -4,7 +4,7 @@
 #include "eval/hand_maps.hpp"
 
 namespace cmap {
-namespace {
+namespace evaluation_rules_test {
 
 using Json = nlohmann::ordered_json;
 using test::gray_map;
@@ -164,5 +164,5 @@ TEST(EvaluationRules, AFlatMapHasNoEntropyAndSaysWhy) {
   EXPECT_THAT(found.warnings[0].message, HasSubstr("flat to the rounding"));
 }
 
-}  // namespace
+}  // namespace evaluation_rules_test
 }  // namespace cmap

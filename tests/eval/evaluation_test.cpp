@@ -5,7 +5,7 @@
 #include "eval/hand_maps.hpp"
 
 namespace cmap {
-namespace {
+namespace evaluation_test {
 
 using Json = nlohmann::ordered_json;
 using test::gray_map;
@@ -251,5 +251,5 @@ TEST(Evaluation, VoxelsTooSmallForTheMapAreRefused) {
   EXPECT_THAT(refusal_of<UsageError>([&] { evaluate(kReference, kEstimate, thinned); }), HasSubstr("voxel"));
 }
 
-}  // namespace
+}  // namespace evaluation_test
 }  // namespace cmap

@@ -12,7 +12,7 @@
 #include "eval/eval_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace execution_test {
 
 using test::fields_of;
 using test::options_for;
@@ -116,5 +116,5 @@ TEST(Execution, AStopFromTheSinkEndsAnEvaluationBeforeTheStage) {
   EXPECT_NO_THROW(evaluate_map(map, {}));
 }
 
-}  // namespace
+}  // namespace execution_test
 }  // namespace cmap

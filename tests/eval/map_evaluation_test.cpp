@@ -6,7 +6,7 @@
 #include "eval/eval_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace map_evaluation_test {
 
 using test::fields_of;
 using test::kNone;
@@ -125,5 +125,5 @@ TEST(EvaluateMap, TheSameForAnyNumberOfThreads) {
   EXPECT_EQ(metrics(), expected);
 }
 
-}  // namespace
+}  // namespace map_evaluation_test
 }  // namespace cmap

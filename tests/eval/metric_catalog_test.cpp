@@ -6,7 +6,7 @@
 #include "eval/eval_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace metric_catalog_test {
 
 using test::options_for;
 using ::testing::AllOf;
@@ -159,5 +159,5 @@ TEST(SelectMetrics, RefusesAnUnknownName) {
                     HasSubstr("color_fidelity")));
 }
 
-}  // namespace
+}  // namespace metric_catalog_test
 }  // namespace cmap

@@ -10,7 +10,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace options_test {
 
 using Json = nlohmann::ordered_json;
 using test::refusal_of;
@@ -292,5 +292,5 @@ TEST(Preset, AnUnknownOneNamesTheOthers) {
               AllOf(HasSubstr("\"urban\" is unknown"), HasSubstr("paper, indoor, outdoor, aerial, mapeval")));
 }
 
-}  // namespace
+}  // namespace options_test
 }  // namespace cmap

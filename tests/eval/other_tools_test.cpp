@@ -4,7 +4,7 @@
 #include "eval/hand_maps.hpp"
 
 namespace cmap {
-namespace {
+namespace other_tools_test {
 
 using Json = nlohmann::ordered_json;
 using test::kEstimate;
@@ -75,5 +75,5 @@ TEST(OtherTools, CloudAnalyzerAtItsDefaults) {
   EXPECT_FALSE(two.contains("awd_m"));
 }
 
-}  // namespace
+}  // namespace other_tools_test
 }  // namespace cmap

@@ -6,7 +6,7 @@
 #include "eval/eval_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace plausibility_test {
 
 using test::options_for;
 using test::warning_ids;
@@ -333,5 +333,5 @@ TEST(Spacing, CopiesMakeAReferenceNoDenser) {
               Contains(HasSubstr("a spacing of 0.5 m")));
 }
 
-}  // namespace
+}  // namespace plausibility_test
 }  // namespace cmap

@@ -8,7 +8,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace point_errors_test {
 
 using test::options_for;
 using test::refusal_of;
@@ -177,5 +177,5 @@ TEST(PointErrors, AnUnwritableFileIsNamed) {
   }
 }
 
-}  // namespace
+}  // namespace point_errors_test
 }  // namespace cmap

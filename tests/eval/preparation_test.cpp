@@ -8,7 +8,7 @@
 #include "eval/eval_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace preparation_test {
 
 using test::gray_map;
 using test::kNone;
@@ -210,5 +210,5 @@ TEST(Prepare, BlocksTooSmallAreRefusedByName) {
   EXPECT_THAT(refusal_of<UsageError>([&] { prepared(kCorners, kCorners, options); }), ::testing::StartsWith("block: "));
 }
 
-}  // namespace
+}  // namespace preparation_test
 }  // namespace cmap

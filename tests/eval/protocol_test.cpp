@@ -6,7 +6,7 @@
 #include "eval/eval_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace protocol_test {
 
 using test::options_for;
 using test::refusal_of;
@@ -123,5 +123,5 @@ TEST(Protocol, APlaneIsRefusedByDirection) {
   EXPECT_THAT(says, ::testing::AnyOf(HasSubstr("translation along"), HasSubstr("rotation about")));
 }
 
-}  // namespace
+}  // namespace protocol_test
 }  // namespace cmap

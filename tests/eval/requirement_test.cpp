@@ -3,7 +3,7 @@
 #include "eval/eval_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace requirement_test {
 
 using test::options_for;
 using test::refusal_of;
@@ -168,5 +168,5 @@ TEST(Requirement, RefusesAnUnknownField) {
   EXPECT_THAT(refusal("color_distance_by_range<=1"), HasSubstr("color_distance_by_range has no number value"));
 }
 
-}  // namespace
+}  // namespace requirement_test
 }  // namespace cmap

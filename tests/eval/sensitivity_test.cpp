@@ -3,7 +3,7 @@
 #include "eval/eval_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace sensitivity_test {
 
 using test::options_for;
 
@@ -73,5 +73,5 @@ TEST(Sensitivity, HoldsTheValueItself) {
   }
 }
 
-}  // namespace
+}  // namespace sensitivity_test
 }  // namespace cmap

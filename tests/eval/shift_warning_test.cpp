@@ -4,7 +4,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace shift_warning_test {
 
 using cmap::testing::TempFolder;
 using test::gray_map;
@@ -69,5 +69,5 @@ TEST_F(Files, NothingIsSaidOfATransformThatWasGiven) {
   EXPECT_THAT(test::warning_ids(evaluation.warnings), Not(Contains("shift_found")));
 }
 
-}  // namespace
+}  // namespace shift_warning_test
 }  // namespace cmap

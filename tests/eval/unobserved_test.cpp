@@ -3,7 +3,7 @@
 #include "eval/eval_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace unobserved_test {
 
 using test::gray_map;
 using test::options_for;
@@ -87,5 +87,5 @@ TEST(Unobserved, ASensorNeedsPositions) {
   EXPECT_NE(test::refusal_of<UsageError>([&] { evaluate(gray_map({{0, 0, 0}}), gray_map({{0, 0, 0}}), options); }), "");
 }
 
-}  // namespace
+}  // namespace unobserved_test
 }  // namespace cmap

@@ -18,7 +18,7 @@
 #endif
 
 namespace cmap {
-namespace {
+namespace camera_model_test {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
@@ -224,5 +224,5 @@ TEST(CameraModel, RaysGoWhereOpenCvUndistortsTo) {
 }
 #endif
 
-}  // namespace
+}  // namespace camera_model_test
 }  // namespace cmap

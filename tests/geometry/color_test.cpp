@@ -10,7 +10,7 @@
 #include <vector>
 
 namespace cmap {
-namespace {
+namespace color_test {
 
 using Eigen::Vector3d;
 
@@ -155,5 +155,5 @@ TEST(Rgb255, FloatIsMultipliedBy255) {
 
 TEST(Rgb255, WithoutColorsIsRefused) { EXPECT_THROW(rgb_255(Colors{}, 0), std::invalid_argument); }
 
-}  // namespace
+}  // namespace color_test
 }  // namespace cmap

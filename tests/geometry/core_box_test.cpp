@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 namespace cmap {
-namespace {
+namespace core_box_test {
 
 using Eigen::Vector3d;
 
@@ -66,5 +66,5 @@ TEST(ChooseOriginOfSample, FewPointsHaveNoStrays) {
             choose_origin({Vector3d::Zero(), Vector3d(1e7, 0, 0)}));
 }
 
-}  // namespace
+}  // namespace core_box_test
 }  // namespace cmap

@@ -10,7 +10,7 @@
 #include "spatial/clouds.hpp"
 
 namespace cmap {
-namespace {
+namespace order_statistics_test {
 
 double quantile(const std::vector<double>& values, double share) {
   return quantiles(values, std::array{share}).front();
@@ -121,5 +121,5 @@ TEST(PrefixQuantiles, MeasureComesBeforeTheInterpolation) {
   EXPECT_EQ(prefix_quantiles(std::array{1.0, 9.0}, median, root).front(), 2.0);  // not sqrt 5
 }
 
-}  // namespace
+}  // namespace order_statistics_test
 }  // namespace cmap

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 namespace cmap {
-namespace {
+namespace point_cloud_test {
 
 using Eigen::Matrix4d;
 using Eigen::Vector3d;
@@ -286,5 +286,5 @@ TEST(Transformed, OfNothingIsEmptyButStillColored) {
   EXPECT_EQ(color_type_name(moved.colors), "f32");
 }
 
-}  // namespace
+}  // namespace point_cloud_test
 }  // namespace cmap

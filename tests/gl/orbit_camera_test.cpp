@@ -6,7 +6,7 @@
 #include <numbers>
 
 namespace cmap {
-namespace {
+namespace orbit_camera_test {
 
 Camera from_south(double distance_m) {
   Camera camera;
@@ -86,5 +86,5 @@ TEST(OrbitCamera, LooksAtAPoint) {
   EXPECT_TRUE(orbit.camera().position.isApprox(Eigen::Vector3d(0, -5, 0), 1e-9));
 }
 
-}  // namespace
+}  // namespace orbit_camera_test
 }  // namespace cmap

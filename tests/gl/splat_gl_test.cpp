@@ -5,7 +5,7 @@
 #include "eval/eval_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace splat_gl_test {
 
 /// One device for all tests; skips where there is none.
 class SplatGl : public ::testing::Test {
@@ -145,5 +145,5 @@ TEST_F(SplatGl, MoreThanOneBatchOfPoints) {
   expect_alike(draw(points, projection, {0.0, 1.0, 2.0}), splat(points, projection, {0.0, 1.0, 2.0}));
 }
 
-}  // namespace
+}  // namespace splat_gl_test
 }  // namespace cmap

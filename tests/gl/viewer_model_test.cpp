@@ -4,7 +4,7 @@
 #include "eval/eval_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace viewer_model_test {
 
 using Answer = ViewerModel::Answer;
 
@@ -175,5 +175,5 @@ TEST(CoarsePoints, AreInSlotsOfTheWholeMap) {
             splat(points, projection, options).cells);
 }
 
-}  // namespace
+}  // namespace viewer_model_test
 }  // namespace cmap

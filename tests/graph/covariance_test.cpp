@@ -1,7 +1,7 @@
 #include "graph/graph_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace covariance_test {
 
 using ::testing::HasSubstr;
 
@@ -111,5 +111,5 @@ TEST(Covariance, RefusesWhatIsFree) {
   EXPECT_THROW(node_covariances(graph, graph.poses, none), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace covariance_test
 }  // namespace cmap

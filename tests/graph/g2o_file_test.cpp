@@ -4,7 +4,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace g2o_file_test {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -139,5 +139,5 @@ TEST(G2oFile, SaysWhatIsWrong) {
   EXPECT_THROW(read_g2o("/no/such.g2o"), InputError);
 }
 
-}  // namespace
+}  // namespace g2o_file_test
 }  // namespace cmap::testing

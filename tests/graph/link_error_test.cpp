@@ -4,7 +4,7 @@
 #include "solver.hpp"
 
 namespace cmap::graph {
-namespace {
+namespace link_error_test {
 
 Node random_node(std::mt19937_64& random, double reach_m = 5.0) {
   Node node{test::random_vector(random, reach_m), Eigen::Quaterniond(test::random_rotation(random)), 0.0};
@@ -112,5 +112,5 @@ TEST(LinkError, CostFunctionIsTheWeightedError) {
   }
 }
 
-}  // namespace
+}  // namespace link_error_test
 }  // namespace cmap::graph

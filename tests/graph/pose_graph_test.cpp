@@ -4,7 +4,7 @@
 #include "graph/graph_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace pose_graph_test {
 
 using test::pose_of;
 using ::testing::HasSubstr;
@@ -367,5 +367,5 @@ TEST(PoseGraph, ChecksItsOptions) {
   EXPECT_THROW(optimize(triangle(), options), UsageError);
 }
 
-}  // namespace
+}  // namespace pose_graph_test
 }  // namespace cmap

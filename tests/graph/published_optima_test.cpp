@@ -9,7 +9,7 @@
 // Optima of public pose graphs: of this module's cost (found independently, with automatic derivatives on quaternions
 // and translations in blocks of their own), and of SE-Sync's, as its paper prints them (Rosen et al. 2019, tables).
 namespace cmap::graph {
-namespace {
+namespace published_optima_test {
 
 /// SE-Sync's objective: kappa |R_j - R_i R_ij|_F^2 + tau |t_j - t_i - R_i t_ij|^2, kappa = 3 / (2 tr(Omega_r^-1)),
 /// tau = 3 / tr(Omega_t^-1). With q the quaternion of R_ij^T R_i^T R_j, the first is kappa 2 |2 vec(q)|^2: the same
@@ -127,5 +127,5 @@ TEST_F(PublishedOptima, TheOrderOfEdgesDoesNotMatter) {
   EXPECT_NEAR(result.final_cost, 1033.89440, kRelative * 1033.89440);
 }
 
-}  // namespace
+}  // namespace published_optima_test
 }  // namespace cmap::graph

@@ -9,7 +9,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace byte_source_test {
 
 using ::testing::HasSubstr;
 
@@ -197,5 +197,5 @@ TEST(LineReader, RefusesEndlessLines) {
   EXPECT_THROW(lines.next(line), InputError);
 }
 
-}  // namespace
+}  // namespace byte_source_test
 }  // namespace cmap::testing

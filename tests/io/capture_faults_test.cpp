@@ -2,7 +2,7 @@
 #include "io/capture_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace capture_faults_test {
 
 using ::testing::HasSubstr;
 namespace fs = std::filesystem;
@@ -107,5 +107,5 @@ TEST(CaptureFaults, ACameraOfAnotherSizeIsDoubted) {
               HasSubstr("capture.json: camera.K: cx, cy = 320, 240 are not near the middle of a picture of 30 x 20"));
 }
 
-}  // namespace
+}  // namespace capture_faults_test
 }  // namespace cmap::testing

@@ -3,7 +3,7 @@
 #include "io/capture_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace capture_test {
 
 using ::testing::HasSubstr;
 namespace fs = std::filesystem;
@@ -200,5 +200,5 @@ TEST(Capture, OneTableOfFramesForSeveralNpz) {
   EXPECT_EQ(refused(), "") << "one NPZ file, and a folder, which has a table of its own";
 }
 
-}  // namespace
+}  // namespace capture_test
 }  // namespace cmap::testing

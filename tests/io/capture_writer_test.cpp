@@ -6,7 +6,7 @@
 #include "io/capture_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace capture_writer_test {
 
 using ::testing::HasSubstr;
 namespace fs = std::filesystem;
@@ -128,5 +128,5 @@ TEST(CaptureWriter, RefusesWhatWouldNotReadBack) {
   EXPECT_FALSE(fs::exists(folder / "new"));
 }
 
-}  // namespace
+}  // namespace capture_writer_test
 }  // namespace cmap::testing

@@ -7,7 +7,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace cloud_format_test {
 
 using namespace std::string_literals;
 using ::testing::AllOf;
@@ -80,5 +80,5 @@ TEST(ReadPointCloud, ReadsFromAPipe) {
   EXPECT_EQ(file.info.sha256.size(), 64U);
 }
 
-}  // namespace
+}  // namespace cloud_format_test
 }  // namespace cmap::testing

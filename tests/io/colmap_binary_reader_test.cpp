@@ -4,7 +4,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace colmap_binary_reader_test {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -89,5 +89,5 @@ TEST(ColmapModel, TheOtherFilesAreNamed) {
   EXPECT_THAT(refusal("renamed.bin", cameras.str()), HasSubstr("is neither KITTI"));
 }
 
-}  // namespace
+}  // namespace colmap_binary_reader_test
 }  // namespace cmap::testing

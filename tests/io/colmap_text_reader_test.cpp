@@ -5,7 +5,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace colmap_text_reader_test {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -83,5 +83,5 @@ TEST(ColmapText, RefusesRowsThatAreNone) {
   }
 }
 
-}  // namespace
+}  // namespace colmap_text_reader_test
 }  // namespace cmap::testing

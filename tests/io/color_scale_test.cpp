@@ -5,7 +5,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace color_scale_test {
 
 using ::testing::HasSubstr;
 
@@ -227,5 +227,5 @@ TEST(ColorScale, OneColorForManyPointsIsSaid) {
   EXPECT_TRUE(file.info.gray_colors);
 }
 
-}  // namespace
+}  // namespace color_scale_test
 }  // namespace cmap::testing

@@ -6,7 +6,7 @@
 #include "units/epsg_units.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace coordinate_units_test {
 
 using ::testing::HasSubstr;
 using ::testing::Optional;
@@ -207,5 +207,5 @@ TEST(Units, NamesForPeople) {
   EXPECT_EQ(unit_name(0.01), "units of 0.01 m");
 }
 
-}  // namespace
+}  // namespace coordinate_units_test
 }  // namespace cmap::testing

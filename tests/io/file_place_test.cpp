@@ -3,7 +3,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace file_place_test {
 
 namespace fs = std::filesystem;
 
@@ -65,5 +65,5 @@ TEST(WhatIsThere, IsSaidOfNamesThatCannotBeLookedAt) {
   EXPECT_THROW(paths_in(too_long), InputError);
 }
 
-}  // namespace
+}  // namespace file_place_test
 }  // namespace cmap::testing

@@ -5,7 +5,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace foreign_formats_test {
 
 using namespace std::string_literals;
 using ::testing::AllOf;
@@ -154,5 +154,5 @@ TEST(ForeignFormats, AnyStartOfAnyOfThemIsSafe) {
   }
 }
 
-}  // namespace
+}  // namespace foreign_formats_test
 }  // namespace cmap::testing

@@ -2,7 +2,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace fuzz_regressions_test {
 
 /// The folder of a format's seeds: "COLMAP text" has colmap_text.
 std::string folder_of(const CloudFormat& format) {
@@ -112,5 +112,5 @@ TEST(FuzzRegressions, CutAndChangedSessionsCapturesAndPosesAreReadOrRefused) {
   }
 }
 
-}  // namespace
+}  // namespace fuzz_regressions_test
 }  // namespace cmap::testing

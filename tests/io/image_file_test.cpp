@@ -3,7 +3,7 @@
 #include "io/capture_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace image_file_test {
 
 using ::testing::HasSubstr;
 
@@ -72,5 +72,5 @@ TEST(ImageFile, SaysWhatIsWrong) {
   EXPECT_FALSE(std::filesystem::exists(folder / "e.png"));
 }
 
-}  // namespace
+}  // namespace image_file_test
 }  // namespace cmap::testing

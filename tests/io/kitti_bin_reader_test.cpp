@@ -5,7 +5,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace kitti_bin_reader_test {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -101,5 +101,5 @@ TEST(KittiBin, EveryCutIsReadInWholePointsOrRefused) {
   }
 }
 
-}  // namespace
+}  // namespace kitti_bin_reader_test
 }  // namespace cmap::testing

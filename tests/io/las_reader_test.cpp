@@ -3,7 +3,7 @@
 #include "io/las_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace las_reader_test {
 
 using ::testing::HasSubstr;
 
@@ -156,5 +156,5 @@ TEST(LasReader, TruncatedAnywhereIsRefused) {
   }
 }
 
-}  // namespace
+}  // namespace las_reader_test
 }  // namespace cmap::testing

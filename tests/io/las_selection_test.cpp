@@ -5,7 +5,7 @@
 #include "io/las_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace las_selection_test {
 
 using ::testing::AllOf;
 using ::testing::ElementsAre;
@@ -164,5 +164,5 @@ TEST(LasSelection, SomeOfAnAxisAtTheEndIsAWarning) {
                     Not(HasSubstr("of z"))));
 }
 
-}  // namespace
+}  // namespace las_selection_test
 }  // namespace cmap::testing

@@ -3,7 +3,7 @@
 #include "io/las_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace las_units_test {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -164,5 +164,5 @@ TEST(LasUnits, DamagedExtendedRecordsAreSaidAndThePointsAreRead) {
   }
 }
 
-}  // namespace
+}  // namespace las_units_test
 }  // namespace cmap::testing

@@ -4,7 +4,7 @@
 #include "io/capture_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace lidar_scan_file_test {
 
 using ::testing::HasSubstr;
 
@@ -108,5 +108,5 @@ TEST(LidarScan, SaysWhatIsWrong) {
   EXPECT_THROW(write_lidar_scan(scan, "never.pcd"), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace lidar_scan_file_test
 }  // namespace cmap::testing

@@ -5,7 +5,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace not_a_cloud_test {
 
 using Rows = std::vector<std::vector<double>>;
 using ::testing::HasSubstr;
@@ -156,5 +156,5 @@ TEST(NotACloud, Nothing) {
   EXPECT_EQ(what({{nan, nan, nan, nan}, {nan, nan, nan, nan}, {nan, nan, nan, nan}}), kMayBePoints);
 }
 
-}  // namespace
+}  // namespace not_a_cloud_test
 }  // namespace cmap::testing

@@ -6,7 +6,7 @@
 #include "io/capture_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace npy_array_test {
 
 using ::testing::HasSubstr;
 
@@ -221,5 +221,5 @@ TEST(ZipArchive, SaysWhatIsWrong) {
   EXPECT_THAT(input_error([] { ZipArchive("no/such.npz"); }), HasSubstr("no/such.npz: no such file"));
 }
 
-}  // namespace
+}  // namespace npy_array_test
 }  // namespace cmap::testing

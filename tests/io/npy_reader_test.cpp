@@ -3,7 +3,7 @@
 #include "io/npy_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace npy_reader_test {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -240,5 +240,5 @@ TEST(NpyCloud, RawIntegersOfLasAreRefused) {
   EXPECT_THAT(refusal_of("x", "y", "w", "label"), HasSubstr("no field 'z'"));
 }
 
-}  // namespace
+}  // namespace npy_reader_test
 }  // namespace cmap::testing

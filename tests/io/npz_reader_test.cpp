@@ -1,7 +1,7 @@
 #include "io/npy_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace npz_reader_test {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -232,5 +232,5 @@ TEST(NpzCloud, TruncatedMembers) {
   }
 }
 
-}  // namespace
+}  // namespace npz_reader_test
 }  // namespace cmap::testing

@@ -8,7 +8,7 @@
 #include "bytes/decimal_comma.hpp"
 
 namespace cmap {
-namespace {
+namespace number_text_test {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -101,5 +101,5 @@ TEST(NumberText, CutsTokens) {
   EXPECT_EQ(next_token(text), "");
 }
 
-}  // namespace
+}  // namespace number_text_test
 }  // namespace cmap

@@ -1,7 +1,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace nvm_reader_test {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -59,5 +59,5 @@ TEST(Nvm, RefusesWhatIsCutOrDamaged) {
   EXPECT_THAT(refused("two\n"), HasSubstr("line 2: 'two' is not the number of cameras"));
 }
 
-}  // namespace
+}  // namespace nvm_reader_test
 }  // namespace cmap::testing

@@ -1,7 +1,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace obj_reader_test {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -46,5 +46,5 @@ TEST(ObjPoints, RefusesWhatIsCutOrMixedUp) {
   EXPECT_THAT(refusal("a.obj", "# nothing\n"), HasSubstr("without a vertex"));
 }
 
-}  // namespace
+}  // namespace obj_reader_test
 }  // namespace cmap::testing

@@ -1,7 +1,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace opensfm_reader_test {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -49,5 +49,5 @@ TEST(OpenSfm, RefusesWhatIsCutOrMixedUp) {
   EXPECT_THAT(refusal("a.json", "[1, \"cameras\", \"shots\"]"), HasSubstr("hold no points"));
 }
 
-}  // namespace
+}  // namespace opensfm_reader_test
 }  // namespace cmap::testing

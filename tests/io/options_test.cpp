@@ -9,7 +9,7 @@
 #include "core/refusal.hpp"
 
 namespace cmap {
-namespace {
+namespace options_test {
 
 using Json = nlohmann::ordered_json;
 using test::refusal_of;
@@ -116,5 +116,5 @@ TEST(Assignment, IsANameAndJsonOrAText) {
   EXPECT_EQ(refusal("=2"), "\"=2\" is not name=value");
 }
 
-}  // namespace
+}  // namespace options_test
 }  // namespace cmap

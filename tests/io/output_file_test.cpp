@@ -10,7 +10,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace output_file_test {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
@@ -202,5 +202,5 @@ TEST(OutputFile, WritesDevicesAndPipesDirectly) {
   EXPECT_TRUE(fs::is_fifo(pipe));
 }
 
-}  // namespace
+}  // namespace output_file_test
 }  // namespace cmap::testing

@@ -9,7 +9,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace output_folder_test {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
@@ -131,5 +131,5 @@ TEST(FolderLock, OneAtATime) {
   EXPECT_THROW(FolderLock(folder / "missing"), OutputError);
 }
 
-}  // namespace
+}  // namespace output_folder_test
 }  // namespace cmap::testing

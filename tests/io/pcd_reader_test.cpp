@@ -4,7 +4,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace pcd_reader_test {
 
 using ::testing::HasSubstr;
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -289,5 +289,5 @@ TEST(PcdReader, CompressedCoordinatesInDouble) {
   EXPECT_EQ(point(file, 0), Eigen::Vector3d(500000.0625, 4000000.125, 3.0));
 }
 
-}  // namespace
+}  // namespace pcd_reader_test
 }  // namespace cmap::testing

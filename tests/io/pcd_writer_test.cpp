@@ -1,7 +1,7 @@
 #include "io/sample_clouds.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace pcd_writer_test {
 
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
@@ -54,5 +54,5 @@ TEST(PcdWriter, FailsOnAFullDisk) {
   }
 }
 
-}  // namespace
+}  // namespace pcd_writer_test
 }  // namespace cmap::testing

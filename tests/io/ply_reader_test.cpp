@@ -5,7 +5,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace ply_reader_test {
 
 using ::testing::HasSubstr;
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -375,5 +375,5 @@ TEST(PlyReader, MillionsOfPropertiesAreRefused) {
   EXPECT_THAT(refusal("wide.ply", header("binary_little_endian", vertices(1, properties))), HasSubstr("65536 bytes"));
 }
 
-}  // namespace
+}  // namespace ply_reader_test
 }  // namespace cmap::testing

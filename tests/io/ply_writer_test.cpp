@@ -3,7 +3,7 @@
 #include "io/sample_clouds.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace ply_writer_test {
 
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
@@ -65,5 +65,5 @@ TEST(PlyWriter, FailsOnAFullDisk) {
   EXPECT_THROW(write_ply("/no/such/folder/a.ply", cloud), OutputError);
 }
 
-}  // namespace
+}  // namespace ply_writer_test
 }  // namespace cmap::testing

@@ -6,7 +6,7 @@
 #include <vector>
 
 namespace cmap {
-namespace {
+namespace point_names_test {
 
 using Names = std::vector<std::string>;
 
@@ -62,5 +62,5 @@ TEST(PointNames, SplatsDegreesAndUnits) {
   EXPECT_EQ(unit_in_name("x"), "");
 }
 
-}  // namespace
+}  // namespace point_names_test
 }  // namespace cmap

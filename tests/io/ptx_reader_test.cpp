@@ -1,7 +1,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace ptx_reader_test {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -136,5 +136,5 @@ TEST(PtxReader, EveryCutIsReadInPartOrRefused) {
   }
 }
 
-}  // namespace
+}  // namespace ptx_reader_test
 }  // namespace cmap::testing

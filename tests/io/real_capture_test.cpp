@@ -9,7 +9,7 @@
 #include "io/real_data.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace real_capture_test {
 
 using RealCapture = RealData;
 namespace fs = std::filesystem;
@@ -147,5 +147,5 @@ TEST_F(RealCapture, OpencalibScanWithRings) {
   EXPECT_LE(*std::max_element(scan.ring.begin(), scan.ring.end()), 63) << "a scanner of 64 beams";
 }
 
-}  // namespace
+}  // namespace real_capture_test
 }  // namespace cmap::testing

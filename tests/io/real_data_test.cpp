@@ -5,7 +5,7 @@
 #include "cmap/io/transform_file.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace real_data_test {
 
 TEST_F(RealData, TumPlyCounts) {
   EXPECT_EQ(read("tum_fr1/reference.ply").info.finite_points, 904998U);
@@ -115,5 +115,5 @@ TEST_F(RealData, CloudComparePlyAndTransform) {
   EXPECT_EQ(read_transform(folder_ / "small_gicp/data/T_target_source.txt").T(3, 3), 1.0);
 }
 
-}  // namespace
+}  // namespace real_data_test
 }  // namespace cmap::testing

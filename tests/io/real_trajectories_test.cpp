@@ -3,7 +3,7 @@
 #include "io/real_data.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace real_trajectories_test {
 
 TEST_F(RealData, KittiPosesArePairedByRow) {
   const auto [estimate, truth] = read_trajectory_pair(folder_ / "kitti_trajectories/kiss_icp_07.txt",
@@ -32,5 +32,5 @@ TEST_F(RealData, OtherTablesAreRefused) {
   }
 }
 
-}  // namespace
+}  // namespace real_trajectories_test
 }  // namespace cmap::testing

@@ -5,7 +5,7 @@
 #include "io/capture_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace session_file_test {
 
 using ::testing::HasSubstr;
 
@@ -499,5 +499,5 @@ TEST(PointMap, SaysWhatIsWrong) {
   EXPECT_THAT(refusal_of("1.npz", "(2, 2, 3)", "(4,)"), HasSubstr("mask.npy: has the shape (4,); (2, 2) expected"));
 }
 
-}  // namespace
+}  // namespace session_file_test
 }  // namespace cmap::testing

@@ -3,7 +3,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace shift_hint_test {
 
 using cmap::testing::TempFolder;
 using ::testing::HasSubstr;
@@ -105,5 +105,5 @@ TEST(Utm, IsThatOfOtherFormulas) {
   }
 }
 
-}  // namespace
+}  // namespace shift_hint_test
 }  // namespace cmap

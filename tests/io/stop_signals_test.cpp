@@ -11,7 +11,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace stop_signals_test {
 
 namespace fs = std::filesystem;
 
@@ -212,5 +212,5 @@ TEST(StopSignals, LeaveNothingOfAnOutputFile) {
   }
 }
 
-}  // namespace
+}  // namespace stop_signals_test
 }  // namespace cmap::testing

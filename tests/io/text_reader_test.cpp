@@ -3,7 +3,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace text_reader_test {
 
 using ::testing::HasSubstr;
 
@@ -304,5 +304,5 @@ TEST(TextReader, BadLines) {
   for (const auto& [content, message] : kCases) EXPECT_THAT(refusal("bad.xyz", content), HasSubstr(message)) << content;
 }
 
-}  // namespace
+}  // namespace text_reader_test
 }  // namespace cmap::testing

@@ -3,7 +3,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace trajectory_file_test {
 
 using ::testing::HasSubstr;
 
@@ -334,5 +334,5 @@ TEST(TrajectoryFile, TumWrittenAndReadBackIsIdentical) {
   EXPECT_THROW(write_tum_trajectory(t, folder / "no/such/poses.tum"), OutputError);
 }
 
-}  // namespace
+}  // namespace trajectory_file_test
 }  // namespace cmap::testing

@@ -5,7 +5,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap::testing {
-namespace {
+namespace transform_file_test {
 
 using ::testing::HasSubstr;
 
@@ -234,5 +234,5 @@ TEST(TransformFile, WrittenAndReadBackIsIdentical) {
   EXPECT_EQ(read_content(transform_json(T).dump()).T, T);
 }
 
-}  // namespace
+}  // namespace transform_file_test
 }  // namespace cmap::testing

@@ -6,7 +6,7 @@
 #include <cmath>
 
 namespace cmap {
-namespace {
+namespace unnamed_columns_test {
 
 using ::testing::HasSubstr;
 
@@ -149,5 +149,5 @@ TEST(UnnamedColumns, PureColorsOfOneAreUndecidable) {
   EXPECT_EQ(info.warnings.at(0).id, "undecidable_columns");
 }
 
-}  // namespace
+}  // namespace unnamed_columns_test
 }  // namespace cmap

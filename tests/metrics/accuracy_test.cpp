@@ -3,7 +3,7 @@
 #include "metrics/measured.hpp"
 
 namespace cmap {
-namespace {
+namespace accuracy_test {
 
 using test::at_threshold;
 using test::measured;
@@ -117,5 +117,5 @@ TEST(Accuracy, VoxelCentersATenthApartAreWithinATenth) {
   }
 }
 
-}  // namespace
+}  // namespace accuracy_test
 }  // namespace cmap

@@ -4,7 +4,7 @@
 #include "metrics/measured.hpp"
 
 namespace cmap {
-namespace {
+namespace average_wasserstein_test {
 
 using test::number;
 
@@ -94,5 +94,5 @@ TEST(AverageWasserstein, SameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(*average(clouds, 0.5).value, many);
 }
 
-}  // namespace
+}  // namespace average_wasserstein_test
 }  // namespace cmap

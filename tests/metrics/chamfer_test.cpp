@@ -4,7 +4,7 @@
 #include "metrics/measured.hpp"
 
 namespace cmap {
-namespace {
+namespace chamfer_test {
 
 using test::measured;
 using test::number;
@@ -113,5 +113,5 @@ TEST(Chamfer, SameBitsForAnyNumberOfThreads) {
   expect_same_variants(measured(catalog::chamfer, pair), many, 0.0);
 }
 
-}  // namespace
+}  // namespace chamfer_test
 }  // namespace cmap

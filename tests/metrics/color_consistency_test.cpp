@@ -5,7 +5,7 @@
 #include "metrics/measured.hpp"
 
 namespace cmap {
-namespace {
+namespace color_consistency_test {
 
 /// Both values, their counts, and the median.
 struct Consistency {
@@ -248,5 +248,5 @@ TEST(ColorConsistency, RefusesWhatItCannotDo) {
   EXPECT_THROW(consistency(test::sheet_cloud(10, 1), 1.0), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace color_consistency_test
 }  // namespace cmap

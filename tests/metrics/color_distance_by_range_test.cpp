@@ -3,7 +3,7 @@
 #include "metrics/measured.hpp"
 
 namespace cmap {
-namespace {
+namespace color_distance_by_range_test {
 
 /// Pairs 0, 0.05, 0.25 and 1 m apart, of color distances 0.2, 0.4, 0.6 and 1.
 test::Clouds four_pairs() {
@@ -50,5 +50,5 @@ TEST(ColorDistanceByRange, RangesAddUp) {
   EXPECT_NEAR_RELATIVE((sum + beyond) / (n + n_beyond), test::number(all, "reference_to_estimate"), test::kSummation);
 }
 
-}  // namespace
+}  // namespace color_distance_by_range_test
 }  // namespace cmap

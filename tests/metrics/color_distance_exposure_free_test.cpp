@@ -4,7 +4,7 @@
 #include "metrics/measured.hpp"
 
 namespace cmap {
-namespace {
+namespace color_distance_exposure_free_test {
 
 TEST(ExposureGains, UndoAnExactGain) {
   test::Clouds clouds{test::sheet_cloud(200, 2), test::sheet_cloud(200, 2)};
@@ -57,5 +57,5 @@ TEST(ColorDistanceExposureFree, HandComputed) {
   EXPECT_DOUBLE_EQ(*found.value, 0.5 / 3.0);
 }
 
-}  // namespace
+}  // namespace color_distance_exposure_free_test
 }  // namespace cmap

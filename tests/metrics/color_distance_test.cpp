@@ -5,7 +5,7 @@
 #include "metrics/measured.hpp"
 
 namespace cmap {
-namespace {
+namespace color_distance_test {
 
 const double kSqrt3 = std::numbers::sqrt3;
 
@@ -154,5 +154,5 @@ TEST(ColorDistance, SameBitsForAnyNumberOfThreadsAndOrderOfPoints) {
   EXPECT_EQ(value(clouds), many);
 }
 
-}  // namespace
+}  // namespace color_distance_test
 }  // namespace cmap

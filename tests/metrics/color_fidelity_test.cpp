@@ -3,7 +3,7 @@
 #include "metrics/measured.hpp"
 
 namespace cmap {
-namespace {
+namespace color_fidelity_test {
 
 TEST(ColorFidelity, HandComputed) {
   // One pair of points; colors 255, 25.5 (in float) and 0 apart.
@@ -30,5 +30,5 @@ TEST(ColorFidelity, ExactColorsAreWarnedOf) {
   EXPECT_EQ(warnings[0].id, "color_fidelity_infinite");
 }
 
-}  // namespace
+}  // namespace color_fidelity_test
 }  // namespace cmap

@@ -5,7 +5,7 @@
 #include "metrics/map_pairs.hpp"
 
 namespace cmap {
-namespace {
+namespace color_moments_test {
 
 struct ColoredPoint {
   Eigen::Vector3f color, place;
@@ -79,5 +79,5 @@ TEST(ColorMoments, PartsAreAtOnePlaceOnlyTogether) {
   }
 }
 
-}  // namespace
+}  // namespace color_moments_test
 }  // namespace cmap

@@ -3,7 +3,7 @@
 #include "metrics/measured.hpp"
 
 namespace cmap {
-namespace {
+namespace color_psnr_test {
 
 struct Psnr {
   double y, cb, cr;
@@ -50,5 +50,5 @@ TEST(ColorPsnr, TakesTheWorseDirectionOfEachChannel) {
   EXPECT_EQ(*other.value, *psnr.value);
 }
 
-}  // namespace
+}  // namespace color_psnr_test
 }  // namespace cmap

@@ -4,7 +4,7 @@
 #include "metrics/measured.hpp"
 
 namespace cmap {
-namespace {
+namespace color_wasserstein_test {
 
 using test::number;
 
@@ -139,5 +139,5 @@ TEST(ColorWasserstein, SameBitsForAnyNumberOfThreads) {
   }
 }
 
-}  // namespace
+}  // namespace color_wasserstein_test
 }  // namespace cmap

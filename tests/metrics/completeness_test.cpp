@@ -1,7 +1,7 @@
 #include "metrics/measured.hpp"
 
 namespace cmap {
-namespace {
+namespace completeness_test {
 
 using test::at_threshold;
 using test::measured;
@@ -41,5 +41,5 @@ TEST(Completeness, AppendedEstimatePointsNeverLowerIt) {
   }
 }
 
-}  // namespace
+}  // namespace completeness_test
 }  // namespace cmap

@@ -4,7 +4,7 @@
 #include "metrics/measured.hpp"
 
 namespace cmap {
-namespace {
+namespace delta_e_test {
 
 using test::number;
 
@@ -62,5 +62,5 @@ TEST(DeltaE, OfAMapAndItselfIsZero) {
   EXPECT_EQ(*found.value, 0.0);
 }
 
-}  // namespace
+}  // namespace delta_e_test
 }  // namespace cmap

@@ -5,7 +5,7 @@
 #include "metrics/measured.hpp"
 
 namespace cmap {
-namespace {
+namespace f_score_test {
 
 TEST(FScore, HandComputed) {
   EXPECT_EQ(f_score(0.0, 0.0), 0.0);
@@ -47,5 +47,5 @@ TEST(FScore, IsSymmetric) {
   for (std::size_t t = 0; t < 5; ++t) EXPECT_EQ(*test::at_threshold(one, t).value, *test::at_threshold(other, t).value);
 }
 
-}  // namespace
+}  // namespace f_score_test
 }  // namespace cmap

@@ -4,7 +4,7 @@
 #include "metrics/measured.hpp"
 
 namespace cmap {
-namespace {
+namespace fitness_test {
 
 using test::at_threshold;
 using test::measured;
@@ -71,5 +71,5 @@ TEST(Fitness, TakesAnyNumberOfThresholds) {
   }
 }
 
-}  // namespace
+}  // namespace fitness_test
 }  // namespace cmap

@@ -7,7 +7,7 @@
 #include "metrics/measured.hpp"
 
 namespace cmap {
-namespace {
+namespace grid_phases_test {
 
 /// The points of one voxel, and their moments as they are written down.
 struct Listed {
@@ -135,5 +135,5 @@ TEST(GridPhases, SmallestVoxelOfHalf) {
   EXPECT_EQ(voxel_of_half(pair, 1.0, 65), std::nullopt);
 }
 
-}  // namespace
+}  // namespace grid_phases_test
 }  // namespace cmap

@@ -4,7 +4,7 @@
 #include "metrics/measured.hpp"
 
 namespace cmap {
-namespace {
+namespace hausdorff_test {
 
 using test::measured;
 using test::number;
@@ -41,5 +41,5 @@ TEST(Hausdorff, OneDistance) {
   }
 }
 
-}  // namespace
+}  // namespace hausdorff_test
 }  // namespace cmap

@@ -7,7 +7,7 @@
 #include "metrics/measured.hpp"
 
 namespace cmap {
-namespace {
+namespace levels_test {
 
 using test::number;
 
@@ -218,5 +218,5 @@ TEST(PointsWithin, CountsLikeTheDefinition) {
   }
 }
 
-}  // namespace
+}  // namespace levels_test
 }  // namespace cmap

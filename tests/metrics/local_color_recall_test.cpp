@@ -4,7 +4,7 @@
 #include "metrics/measured.hpp"
 
 namespace cmap {
-namespace {
+namespace local_color_recall_test {
 
 /// The metric's numbers, and the field that it counts.
 struct Recall {
@@ -279,5 +279,5 @@ TEST(LocalColorRecall, NeedsColorsInBothMaps) {
   EXPECT_THROW(recall(clouds, 0.1, 0.5), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace local_color_recall_test
 }  // namespace cmap

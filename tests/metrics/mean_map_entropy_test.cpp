@@ -5,7 +5,7 @@
 #include "metrics/measured.hpp"
 
 namespace cmap {
-namespace {
+namespace mean_map_entropy_test {
 
 const double kEntropyOfUnitGaussian = 1.5 * std::log(2.0 * std::numbers::pi * std::numbers::e);
 
@@ -188,5 +188,5 @@ TEST(MeanMapEntropy, IsLowerForASharperMap) {
             entropy(thick, kRadius_m, 10).value - 1.0);  // ln 5 = 1.6, at infinite radius
 }
 
-}  // namespace
+}  // namespace mean_map_entropy_test
 }  // namespace cmap

@@ -4,7 +4,7 @@
 #include "metrics/measured.hpp"
 
 namespace cmap {
-namespace {
+namespace median_color_distance_test {
 
 using test::number;
 
@@ -57,5 +57,5 @@ TEST(MedianColorDistance, PointsWithoutColorAreLeftOut) {
   EXPECT_TRUE(std::isnan(*median(clouds).value));
 }
 
-}  // namespace
+}  // namespace median_color_distance_test
 }  // namespace cmap

@@ -4,7 +4,7 @@
 #include "point_runs.hpp"
 
 namespace cmap {
-namespace {
+namespace metric_sums_test {
 
 using Words = std::vector<ExactSum::Words>;
 
@@ -81,5 +81,5 @@ TEST_F(CutMap, SumsHaveTheSameBytesInAnyNumberOfParts) {
   EXPECT_GT(n_summed, 10U);
 }
 
-}  // namespace
+}  // namespace metric_sums_test
 }  // namespace cmap

@@ -1,7 +1,7 @@
 #include "metrics/measured.hpp"
 
 namespace cmap {
-namespace {
+namespace overlap_test {
 
 /// Distances 0.25 and 3 of the estimate's points.
 const test::Clouds kTwo{test::cloud_of({{0, 0, 0}, {7, 0, 0}}), test::cloud_of({{0.25f, 0, 0}, {7, 3, 0}})};
@@ -27,5 +27,5 @@ TEST(Overlap, IsFitnessAtItsDistance) {
   }
 }
 
-}  // namespace
+}  // namespace overlap_test
 }  // namespace cmap

@@ -8,7 +8,7 @@
 #include "metrics/map_pairs.hpp"
 
 namespace cmap {
-namespace {
+namespace point_spacing_test {
 
 PointSpacing spacing_of(const PointCloud& cloud) { return point_spacing(Bvh(sort_points(cloud))); }
 
@@ -91,5 +91,5 @@ TEST(PointSpacing, TheSameForAnyNumberOfThreads) {
   EXPECT_EQ(one.median_m, all.median_m);
 }
 
-}  // namespace
+}  // namespace point_spacing_test
 }  // namespace cmap

@@ -3,7 +3,7 @@
 #include "metrics/measured.hpp"
 
 namespace cmap {
-namespace {
+namespace rmse_test {
 
 using test::measured;
 using test::number;
@@ -31,5 +31,5 @@ TEST(Rmse, EqualsTheDefinitionOverManyChunks) {
                        static_cast<double>(std::sqrt(sum / 300001.0L)), test::kLongDoubleSum);
 }
 
-}  // namespace
+}  // namespace rmse_test
 }  // namespace cmap

@@ -4,7 +4,7 @@
 #include "metrics/measured.hpp"
 
 namespace cmap {
-namespace {
+namespace spatial_consistency_test {
 
 using Voxels = std::vector<VoxelDistance>;
 
@@ -145,5 +145,5 @@ TEST(SpatialConsistency, OfMaps) {
   EXPECT_EQ(n_voxels(scs({clouds.reference, clouds.reference})), 0) << "every distance is 0";
 }
 
-}  // namespace
+}  // namespace spatial_consistency_test
 }  // namespace cmap

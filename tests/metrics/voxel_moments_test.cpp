@@ -5,7 +5,7 @@
 #include "metrics/map_pairs.hpp"
 
 namespace cmap {
-namespace {
+namespace voxel_moments_test {
 
 constexpr std::uint32_t kFarthest = 0xffffffff;
 
@@ -164,5 +164,5 @@ TEST(GaussianPairs, NeitherOrderNorOtherPointsChangeABit) {
   }
 }
 
-}  // namespace
+}  // namespace voxel_moments_test
 }  // namespace cmap

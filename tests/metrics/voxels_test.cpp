@@ -8,7 +8,7 @@
 #include "metrics/map_pairs.hpp"
 
 namespace cmap {
-namespace {
+namespace voxels_test {
 
 using Key = std::array<std::int32_t, 3>;
 
@@ -105,5 +105,5 @@ TEST(CollectVoxels, InTheSameOrderForAnyNumberOfThreads) {
   for (std::size_t i = 0; i < one.size(); ++i) EXPECT_EQ(one[i].key, many[i].key);
 }
 
-}  // namespace
+}  // namespace voxels_test
 }  // namespace cmap

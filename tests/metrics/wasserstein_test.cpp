@@ -9,7 +9,7 @@
 #include "metrics/map_pairs.hpp"
 
 namespace cmap {
-namespace {
+namespace wasserstein_test {
 
 Gaussian gaussian(const Eigen::Vector3d& mean, const Eigen::Matrix3d& covariance, std::uint64_t n = 101) {
   return {n, mean, covariance * static_cast<double>(n - 1)};
@@ -212,5 +212,5 @@ TEST(GaussianPairs, EqualTheDefinition) {
 
 TEST(GaussianPairs, RefuseVoxelsTooSmallToCount) { EXPECT_THROW(pairs_of(test::two_sheets(), 1e-9, 2), UsageError); }
 
-}  // namespace
+}  // namespace wasserstein_test
 }  // namespace cmap

@@ -6,7 +6,7 @@
 #include "peers/peers_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace cloudanalyzer_test {
 
 using test::diagonal;
 using test::Doubles;
@@ -52,5 +52,5 @@ TEST(CloudAnalyzer, StructureRaisesEigenvaluesAndCountsVoxelsAmongEqualOnes) {
   EXPECT_TRUE(std::isnan(cloudanalyzer_structure({}, 5).awd_m));
 }
 
-}  // namespace
+}  // namespace cloudanalyzer_test
 }  // namespace cmap

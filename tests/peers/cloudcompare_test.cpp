@@ -5,7 +5,7 @@
 #include "peers/peers_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace cloudcompare_test {
 
 using test::Doubles;
 
@@ -30,5 +30,5 @@ TEST(CloudCompareDistance, EqualsTheDefinition) {
   EXPECT_NEAR(found.standard_deviation_m, std::sqrt(variance), 1e-7);
 }
 
-}  // namespace
+}  // namespace cloudcompare_test
 }  // namespace cmap

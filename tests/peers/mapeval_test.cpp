@@ -6,7 +6,7 @@
 #include "peers/peers_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace mapeval_test {
 
 using test::diagonal;
 using test::Doubles;
@@ -117,5 +117,5 @@ TEST(MapEvalEntropy, LeavesOneDimensionsConstantOnly) {
   EXPECT_TRUE(std::isnan(mapeval_entropy(shape, 21).value));
 }
 
-}  // namespace
+}  // namespace mapeval_test
 }  // namespace cmap

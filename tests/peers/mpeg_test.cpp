@@ -5,7 +5,7 @@
 #include "metrics/map_pairs.hpp"
 
 namespace cmap {
-namespace {
+namespace mpeg_test {
 
 MpegCloud mpeg_cloud(const PointCloud& cloud) {
   const auto& colors = std::get<Array<Rgb8>>(cloud.colors);
@@ -155,5 +155,5 @@ TEST(Mpeg, RefusesCloudsWithoutPointsOrColors) {
   EXPECT_THROW(mpeg_distortion(good, {{{0, 0, 0}}, {}}), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace mpeg_test
 }  // namespace cmap

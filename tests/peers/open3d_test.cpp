@@ -5,7 +5,7 @@
 #include "peers/peers_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace open3d_test {
 
 using test::Doubles;
 
@@ -38,5 +38,5 @@ TEST(Open3dRegistration, IsOursWhereNoDistanceIsTheThreshold) {
   }
 }
 
-}  // namespace
+}  // namespace open3d_test
 }  // namespace cmap

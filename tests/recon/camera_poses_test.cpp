@@ -3,7 +3,7 @@
 #include "recon/recon_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace camera_poses_test {
 
 /// 10 m/s along x, turning by 90 degrees about z in a second; 10 Hz, a hole from 1 to 2 s.
 Trajectory drive() {
@@ -56,5 +56,5 @@ TEST(CameraPoses, NoneAcrossAHole) {
   EXPECT_TRUE(camera_poses(drive(), CameraMount{}, times, PosePairing::kInterpolated, 1.5)[1]);
 }
 
-}  // namespace
+}  // namespace camera_poses_test
 }  // namespace cmap

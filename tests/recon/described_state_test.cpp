@@ -6,7 +6,7 @@
 #include "registration/stage.hpp"
 
 namespace cmap {
-namespace {
+namespace described_state_test {
 
 using Json = nlohmann::ordered_json;
 
@@ -106,5 +106,5 @@ TEST(DescribedState, ReadsNothingElse) {
   EXPECT_FALSE(read(3));
 }
 
-}  // namespace
+}  // namespace described_state_test
 }  // namespace cmap

@@ -5,7 +5,7 @@
 #include "recon/room_capture.hpp"
 
 namespace cmap {
-namespace {
+namespace fusion_stage_test {
 
 using ::testing::ElementsAre;
 
@@ -90,5 +90,5 @@ TEST(FusionStage, TheRangeIsInMetersWhateverTheUnit) {
   EXPECT_THROW(run_fusion({room.open(), placed.sessions, placed.poses, {}}, {}, options), UnsupportedError);
 }
 
-}  // namespace
+}  // namespace fusion_stage_test
 }  // namespace cmap

@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace cmap {
-namespace {
+namespace lidar_map_test {
 
 /// 10 m/s along x, turning 90 degrees a second about z, from t = 0 to 2 s.
 Trajectory turning_drive() {
@@ -62,5 +62,5 @@ TEST(LidarMap, PointsWithoutAPoseOrOfTheCarrierAreLeftOut) {
   EXPECT_EQ(cloud.size(), 1u);
 }
 
-}  // namespace
+}  // namespace lidar_map_test
 }  // namespace cmap

@@ -7,7 +7,7 @@
 #include "cmap/core/error.hpp"
 
 namespace cmap {
-namespace {
+namespace map_fusion_test {
 
 const Eigen::Isometry3d kIdentity = Eigen::Isometry3d::Identity();
 
@@ -130,5 +130,5 @@ TEST(Fusion, RefusesVoxelsThatCannotBe) {
 
 TEST(Fusion, OfNothingIsEmpty) { EXPECT_EQ(MapFusion(voxels(0.1)).finish().size(), 0u); }
 
-}  // namespace
+}  // namespace map_fusion_test
 }  // namespace cmap

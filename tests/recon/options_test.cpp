@@ -9,7 +9,7 @@
 #include "cmap/core/error.hpp"
 
 namespace cmap {
-namespace {
+namespace options_test {
 
 using Json = nlohmann::ordered_json;
 
@@ -82,5 +82,5 @@ TEST(ReconstructionOptions, RefusesWhatIsOutOfRange) {
   EXPECT_EQ(changed_from_default(options), std::set<std::string>{});
 }
 
-}  // namespace
+}  // namespace options_test
 }  // namespace cmap

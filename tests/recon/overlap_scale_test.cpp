@@ -3,7 +3,7 @@
 #include "recon/recon_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace overlap_scale_test {
 
 struct Frame {
   std::vector<float> depth_before, confidence_before, depth_after, confidence_after;
@@ -95,5 +95,5 @@ TEST(OverlapScale, CentersThatDoNotTell) {
   EXPECT_THROW(scale_ratio_of_centers(two, line), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace overlap_scale_test
 }  // namespace cmap

@@ -5,7 +5,7 @@
 #include "recon/session_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace placed_session_test {
 
 TEST(PlacedSession, FramesOfASessionAreWhereTheSimilarityPutsThem) {
   const SessionPredictions session = test::session_of(0, 3, 2.0);
@@ -15,5 +15,5 @@ TEST(PlacedSession, FramesOfASessionAreWhereTheSimilarityPutsThem) {
   EXPECT_LT((placed.T_world_camera[2].translation() - Eigen::Vector3d(3, 2, 3)).norm(), 1e-12) << "2 m along x";
 }
 
-}  // namespace
+}  // namespace placed_session_test
 }  // namespace cmap

@@ -5,7 +5,7 @@
 #include "recon/recon_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace pose_convention_test {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -111,5 +111,5 @@ TEST(PoseConvention, GapsInOdometryDoNotMatter) {
   EXPECT_THAT(doubt(r, inverted), HasSubstr("camera-to-world"));
 }
 
-}  // namespace
+}  // namespace pose_convention_test
 }  // namespace cmap

@@ -4,7 +4,7 @@
 #include "recon/session_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace posegraph_stage_test {
 
 using test::at;
 using test::session_of;
@@ -50,5 +50,5 @@ TEST(PoseGraphStage, SigmasDecideWhoYields) {
   EXPECT_LT(end_x_m(1.0), end_x_m(0.1) - 0.05) << "weaker priors, a stronger link";
 }
 
-}  // namespace
+}  // namespace posegraph_stage_test
 }  // namespace cmap

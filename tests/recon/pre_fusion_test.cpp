@@ -3,7 +3,7 @@
 #include "recon/recon_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace pre_fusion_test {
 
 using ::testing::HasSubstr;
 
@@ -125,5 +125,5 @@ TEST(PreFusion, NamesTheSessionWithoutPoses) {
               HasSubstr("session 2: no frame of the session has a camera pose"));
 }
 
-}  // namespace
+}  // namespace pre_fusion_test
 }  // namespace cmap

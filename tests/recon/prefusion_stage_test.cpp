@@ -2,7 +2,7 @@
 #include "recon/room_capture.hpp"
 
 namespace cmap {
-namespace {
+namespace prefusion_stage_test {
 
 using test::kUnits_m;
 using ::testing::HasSubstr;
@@ -60,5 +60,5 @@ TEST(PreFusionStage, AnOutlierKeepsItsPath) {
   EXPECT_LT(test::camera_error_m(state.placed), 0.01);
 }
 
-}  // namespace
+}  // namespace prefusion_stage_test
 }  // namespace cmap

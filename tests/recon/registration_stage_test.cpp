@@ -2,7 +2,7 @@
 #include "registration/stage.hpp"
 
 namespace cmap {
-namespace {
+namespace registration_stage_test {
 
 /// The sessions where they are.
 std::vector<SessionState> placed_exactly() {
@@ -90,5 +90,5 @@ TEST(RegistrationStage, WithoutScansPrefusionStaysUnmeasured) {
   EXPECT_EQ(out.links.size(), 2U);
 }
 
-}  // namespace
+}  // namespace registration_stage_test
 }  // namespace cmap

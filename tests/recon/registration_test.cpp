@@ -8,7 +8,7 @@
 #include "spatial/clouds.hpp"
 
 namespace cmap {
-namespace {
+namespace registration_test {
 
 void add_wall(PointCloud& cloud, const Eigen::Vector3d& corner, const Eigen::Vector3d& u, const Eigen::Vector3d& v,
               double step_m) {
@@ -120,5 +120,5 @@ TEST(Registration, WithoutLidarOrPointsTheSessionStays) {
   EXPECT_EQ(apart.T_world_session.translation, T.translation);
 }
 
-}  // namespace
+}  // namespace registration_test
 }  // namespace cmap

@@ -4,7 +4,7 @@
 #include "recon/room_capture.hpp"
 
 namespace cmap {
-namespace {
+namespace resume_test {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
@@ -125,5 +125,5 @@ TEST_F(Resume, ADamagedFileIsFoundAgain) {
   expect_same(run(true), first_);
 }
 
-}  // namespace
+}  // namespace resume_test
 }  // namespace cmap

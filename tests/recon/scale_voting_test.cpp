@@ -6,7 +6,7 @@
 #include "recon/recon_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace scale_voting_test {
 
 using ::testing::Each;
 using ::testing::ElementsAre;
@@ -290,5 +290,5 @@ TEST(ScaleVoting, RefusesWrongArguments) {
             "no session has a baseline: the scale is not determined");
 }
 
-}  // namespace
+}  // namespace scale_voting_test
 }  // namespace cmap

@@ -7,7 +7,7 @@
 #include "recon/session_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace session_graph_test {
 
 using test::at;
 using test::session_of;
@@ -80,5 +80,5 @@ TEST(SessionGraph, OptimizedSessionsMeetAtTheirLink) {
   }
 }
 
-}  // namespace
+}  // namespace session_graph_test
 }  // namespace cmap

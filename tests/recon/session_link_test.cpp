@@ -5,7 +5,7 @@
 #include "recon/session_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace session_link_test {
 
 using test::at;
 using test::session_of;
@@ -44,5 +44,5 @@ TEST(SessionLink, SessionsApartHaveNoLink) {
   EXPECT_EQ(refusal({a, placed_a, 99.0}, {a, placed_a, 99.0}), "0 pixels of shared frames are good in both");
 }
 
-}  // namespace
+}  // namespace session_link_test
 }  // namespace cmap

@@ -5,7 +5,7 @@
 #include "recon/recon_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace session_placement_test {
 
 using test::rotation_error_deg;
 using test::simulated_session;
@@ -264,5 +264,5 @@ TEST(SessionPlacement, ChecksItsOptions) {
   EXPECT_THROW(check_options(options), UsageError);
 }
 
-}  // namespace
+}  // namespace session_placement_test
 }  // namespace cmap

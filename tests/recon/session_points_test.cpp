@@ -6,7 +6,7 @@
 #include "cmap/core/error.hpp"
 
 namespace cmap {
-namespace {
+namespace session_points_test {
 
 /// One row of pixels with these confidences, seen by a camera at the session's origin.
 SessionPredictions row_of(std::vector<float> confidences) {
@@ -54,5 +54,5 @@ TEST(FramePointsOf, ArePixelsWithEnoughConfidenceInTheCamerasFrame) {
   EXPECT_EQ(points.colors[1], (Rgb8{1, 2, 3}));
 }
 
-}  // namespace
+}  // namespace session_points_test
 }  // namespace cmap

@@ -3,7 +3,7 @@
 #include "io/io_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace stage_files_test {
 
 using testing::read_bytes;
 using testing::TempFolder;
@@ -58,5 +58,5 @@ TEST(StageFiles, WithoutAFolderNothingIsKept) {
   EXPECT_EQ(run({}, true, "key", 2), 2);
 }
 
-}  // namespace
+}  // namespace stage_files_test
 }  // namespace cmap

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace cmap {
-namespace {
+namespace time_spans_test {
 
 using ::testing::HasSubstr;
 
@@ -41,5 +41,5 @@ TEST(TimeSpans, UnitsAreGuessed) {
   EXPECT_THAT(text({10, 20}, {10000.0, 21000.0}), HasSubstr("; are those of the poses milliseconds?"));
 }
 
-}  // namespace
+}  // namespace time_spans_test
 }  // namespace cmap

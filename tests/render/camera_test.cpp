@@ -8,7 +8,7 @@
 #include "eval/eval_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace camera_test {
 
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
@@ -187,5 +187,5 @@ TEST(ReadCamera, RefusesByFileAndKey) {
   EXPECT_THAT(test::refusal_of<UsageError>([] { view_from_name("back"); }), HasSubstr("\"back\" is none of top"));
 }
 
-}  // namespace
+}  // namespace camera_test
 }  // namespace cmap

@@ -4,7 +4,7 @@
 #include "eval/eval_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace figure_test {
 
 using ::testing::HasSubstr;
 
@@ -145,5 +145,5 @@ TEST(DrawText, LeavesInkOfItsWidth) {
   EXPECT_NEAR(right - left, text_width("LCR 82.5 %", 18), 4);
 }
 
-}  // namespace
+}  // namespace figure_test
 }  // namespace cmap

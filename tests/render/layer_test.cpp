@@ -3,7 +3,7 @@
 #include "eval/eval_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace layer_test {
 
 using ::testing::HasSubstr;
 
@@ -134,5 +134,5 @@ TEST(MakeLayer, RefusesWhatTheDataCannotGive) {
   EXPECT_TRUE(make_layer(plain, "reference").scale.has_value()) << "height in place of color";
 }
 
-}  // namespace
+}  // namespace layer_test
 }  // namespace cmap

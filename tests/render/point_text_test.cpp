@@ -3,7 +3,7 @@
 #include "eval/eval_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace point_text_test {
 
 using ::testing::ElementsAre;
 
@@ -28,5 +28,5 @@ TEST(DescribePoint, OfAPair) {
                           "distance to the reference 0.25 m", "color distance 0.2 unit RGB"));
 }
 
-}  // namespace
+}  // namespace point_text_test
 }  // namespace cmap

@@ -4,7 +4,7 @@
 #include "eval/eval_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace splat_test {
 
 /// Looks down at 8 x 8 m with one pixel for each 0.125 m: pixels of points on that grid are exact.
 Projection from_above(int side_px = 64) {
@@ -127,5 +127,5 @@ TEST(EyeDomeShading, DarkensBehindAnEdgeOnly) {
   for (float factor : eye_dome_shading(pixels, from_above(), 0.0)) EXPECT_EQ(factor, 1.0f);
 }
 
-}  // namespace
+}  // namespace splat_test
 }  // namespace cmap

@@ -8,7 +8,7 @@
 #include "metrics/map_pairs.hpp"
 
 namespace cmap {
-namespace {
+namespace distribution_test {
 
 std::uint64_t total(const DirectedDistribution& d) {
   return std::accumulate(d.counts.begin(), d.counts.end(), d.n_beyond);
@@ -67,5 +67,5 @@ TEST(Ranked, EvenlySpacedRanksOfMany) {
   for (std::size_t i = 0; i < kMostRanked; ++i) ASSERT_EQ(many.values[i], static_cast<double>(3 * i + 1));
 }
 
-}  // namespace
+}  // namespace distribution_test
 }  // namespace cmap

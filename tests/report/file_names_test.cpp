@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace cmap {
-namespace {
+namespace file_names_test {
 
 TEST(WithFileNames, AbsolutePathsLoseTheirFolders) {
   const auto expect = [](const char* text, const char* wanted) { EXPECT_EQ(with_file_names(text), wanted) << text; };
@@ -33,5 +33,5 @@ TEST(SharedReport, NamesFilesInAllItsTexts) {
   EXPECT_EQ(shared_report(report), shared);
 }
 
-}  // namespace
+}  // namespace file_names_test
 }  // namespace cmap

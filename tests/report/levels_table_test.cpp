@@ -6,7 +6,7 @@
 #include "report/table_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace levels_table_test {
 
 using Json = nlohmann::ordered_json;
 using test::column_of;
@@ -211,5 +211,5 @@ TEST(LevelsTable, LinesKeepToTheWidth) {
       << "at the width from which levels are shown, remarks stand beside them";
 }
 
-}  // namespace
+}  // namespace levels_table_test
 }  // namespace cmap

@@ -9,7 +9,7 @@
 #include "metrics/map_pairs.hpp"
 
 namespace cmap {
-namespace {
+namespace packed_map_test {
 
 using ::testing::ElementsAre;
 
@@ -140,5 +140,5 @@ TEST(PackMap, TenDiagonalsAwayIsNoStray) {
   EXPECT_EQ(pack_map(pair.reference, all_slots(pair)).description.at("grids").size(), 1u);
 }
 
-}  // namespace
+}  // namespace packed_map_test
 }  // namespace cmap

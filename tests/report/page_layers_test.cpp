@@ -6,7 +6,7 @@
 #include "metrics/map_pairs.hpp"
 
 namespace cmap {
-namespace {
+namespace page_layers_test {
 
 using ::testing::ElementsAre;
 
@@ -66,5 +66,5 @@ TEST(HeightLayer, OfALevelMapIsARangeAllTheSame) {
   EXPECT_THAT(layer.at("range"), ElementsAre(5.0, 6.0));
 }
 
-}  // namespace
+}  // namespace page_layers_test
 }  // namespace cmap

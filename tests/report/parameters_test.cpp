@@ -6,7 +6,7 @@
 #include "report/report_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace parameters_test {
 
 using Json = nlohmann::ordered_json;
 
@@ -56,5 +56,5 @@ TEST(Parameters, AreWhatTheSchemaOfReportsSays) {
   }
 }
 
-}  // namespace
+}  // namespace parameters_test
 }  // namespace cmap

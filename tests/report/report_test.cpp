@@ -10,7 +10,7 @@
 #include "report/report_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace report_test {
 
 using Json = nlohmann::ordered_json;
 using test::described;
@@ -230,5 +230,5 @@ TEST(Report, PathsInAnyEncodingMakeAReport) {
   EXPECT_NO_THROW(static_cast<void>(report.dump()));
 }
 
-}  // namespace
+}  // namespace report_test
 }  // namespace cmap

@@ -4,7 +4,7 @@
 #include "report/table_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace table_row_test {
 
 using test::lines_of;
 using ::testing::ElementsAre;
@@ -81,5 +81,5 @@ TEST(TableRow, AWordThatIsLongerThanTheLineStaysWhole) {
   EXPECT_THAT(lines_of(format_row(row_with(word), 3)), ElementsAre(EndsWith("#"), "    " + word));
 }
 
-}  // namespace
+}  // namespace table_row_test
 }  // namespace cmap

@@ -5,7 +5,7 @@
 #include "report/table_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace table_test {
 
 using test::column_of;
 using test::gray_map;
@@ -282,5 +282,5 @@ TEST(Table, IsMadeFromASavedReport) {
   EXPECT_EQ(format_table(nlohmann::ordered_json::parse(report.dump())), format_table(report));
 }
 
-}  // namespace
+}  // namespace table_test
 }  // namespace cmap

@@ -9,7 +9,7 @@
 #include "spatial/clouds.hpp"
 
 namespace cmap {
-namespace {
+namespace thinning_test {
 
 using ::testing::ElementsAre;
 
@@ -72,5 +72,5 @@ TEST(EvenlySpreadSlots, TheSameForAnyNumberOfThreads) {
   EXPECT_EQ(evenly_spread_slots(points, 10'000), all);
 }
 
-}  // namespace
+}  // namespace thinning_test
 }  // namespace cmap

@@ -7,7 +7,7 @@
 #include "sim/sim_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace camera_view_test {
 
 using testing::aerial;
 using ::testing::HasSubstr;
@@ -177,5 +177,5 @@ TEST(RenderView, PointsOfTheSceneHaveTheirColorInTheImage) {
   }
 }
 
-}  // namespace
+}  // namespace camera_view_test
 }  // namespace cmap

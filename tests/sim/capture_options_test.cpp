@@ -6,7 +6,7 @@
 #include "sim/sensor_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace capture_options_test {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -118,5 +118,5 @@ TEST(CaptureOptions, CameraLooksForwardByDefaultAndDownWhenPitched) {
   EXPECT_TRUE((down.linear() * -Eigen::Vector3d::UnitY()).isApprox(Eigen::Vector3d::UnitX())) << "forward is up";
 }
 
-}  // namespace
+}  // namespace capture_options_test
 }  // namespace cmap

@@ -15,7 +15,7 @@
 #include "sim/sensor_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace capture_simulation_test {
 
 namespace fs = std::filesystem;
 using testing::TempFolder;
@@ -286,5 +286,5 @@ TEST(MakeRoute, CutsWaysOfTheScene) {
   EXPECT_NEAR(length(make_route(scene, choice)), 33.0, 1e-6);
 }
 
-}  // namespace
+}  // namespace capture_simulation_test
 }  // namespace cmap

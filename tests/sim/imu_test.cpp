@@ -5,7 +5,7 @@
 #include "sim/sensor_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace imu_test {
 
 using testing::rms;
 using testing::walk;
@@ -182,5 +182,5 @@ TEST(Imu, RefusesOptionsOutOfRange) {
   EXPECT_THROW(simulate_imu(walk(), options, 1), UsageError);
 }
 
-}  // namespace
+}  // namespace imu_test
 }  // namespace cmap

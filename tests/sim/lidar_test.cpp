@@ -8,7 +8,7 @@
 #include "sim/sensor_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace lidar_test {
 
 using testing::room;
 using testing::walk;
@@ -243,5 +243,5 @@ TEST(SimulateScan, RefusesWhatCannotBe) {
   EXPECT_THROW(lidar_model("hesai"), UsageError);
 }
 
-}  // namespace
+}  // namespace lidar_test
 }  // namespace cmap

@@ -3,7 +3,7 @@
 #include "sim/sim_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace mesh_scene_test {
 
 using ::testing::AllOf;
 using testing::Bytes;
@@ -133,5 +133,5 @@ TEST(MeshScene, ErrorsNameFileAndPlace) {
   EXPECT_THAT([&] { read_mesh_scene(folder.write("mesh.stl", "x")); }, ThrowsMessage<UsageError>(HasSubstr(".obj")));
 }
 
-}  // namespace
+}  // namespace mesh_scene_test
 }  // namespace cmap

@@ -8,7 +8,7 @@
 #include "sim/sim_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace network_input_test {
 
 using testing::pinhole;
 
@@ -114,5 +114,5 @@ TEST(NetworkImage, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(network_image(ramp(640, 480), own, network).image.pixels, both.pixels);
 }
 
-}  // namespace
+}  // namespace network_input_test
 }  // namespace cmap

@@ -6,7 +6,7 @@
 #include "sim/sensor_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace path_test {
 
 using ::testing::HasSubstr;
 
@@ -124,5 +124,5 @@ TEST(Path, RefusesOptionsOutOfRange) {
   EXPECT_THROW(make_path({}, options, 1), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace path_test
 }  // namespace cmap

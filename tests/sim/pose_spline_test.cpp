@@ -6,7 +6,7 @@
 #include "sim/sensor_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace pose_spline_test {
 
 std::vector<Eigen::Isometry3d> random_controls(std::size_t n, double turn_rad) {
   std::mt19937_64 random(7);
@@ -89,5 +89,5 @@ TEST(PoseSpline, RefusesWhatCannotBe) {
   EXPECT_NO_THROW(spline.pose(1.0 + 3 * 0.1));
 }
 
-}  // namespace
+}  // namespace pose_spline_test
 }  // namespace cmap

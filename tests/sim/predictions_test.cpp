@@ -11,7 +11,7 @@
 #include "sim/sim_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace predictions_test {
 
 using testing::pinhole;
 using testing::rms;
@@ -353,5 +353,5 @@ TEST(SimulateSession, RefusesWhatCannotBe) {
   EXPECT_THROW(simulate_session(d.all(), larger, 0, {}, 1), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace predictions_test
 }  // namespace cmap

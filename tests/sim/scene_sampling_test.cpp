@@ -4,7 +4,7 @@
 #include "sim/sim_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace scene_sampling_test {
 
 using ::testing::HasSubstr;
 using testing::TempFolder;
@@ -124,5 +124,5 @@ TEST(SeenSurface, IsWhatSingleRaysFindFromAnyOfManyViews) {
   EXPECT_LT(n_doubtful, n_seen / 20);
 }
 
-}  // namespace
+}  // namespace scene_sampling_test
 }  // namespace cmap

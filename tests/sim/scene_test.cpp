@@ -7,7 +7,7 @@
 #include "sim/sim_testing.hpp"
 
 namespace cmap {
-namespace {
+namespace scene_test {
 
 using testing::aerial;
 using testing::indoor;
@@ -222,5 +222,5 @@ TEST_P(EveryScene, NoTwoPatchesOfGroundLookAlike) {
   }
 }
 
-}  // namespace
+}  // namespace scene_test
 }  // namespace cmap

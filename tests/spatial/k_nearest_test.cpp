@@ -10,7 +10,7 @@
 #include "spatial/clouds.hpp"
 
 namespace cmap {
-namespace {
+namespace k_nearest_test {
 
 /// The definition: all points by squared distance in double, then by original index.
 std::vector<std::uint32_t> brute_force(const PointBlocks& data, const Eigen::Vector3f& query, std::size_t k) {
@@ -83,5 +83,5 @@ TEST(KNearest, RefusesImpossibleNumbers) {
   EXPECT_THROW(find_k_nearest(index, index.points, 65), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace k_nearest_test
 }  // namespace cmap

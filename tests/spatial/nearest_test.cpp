@@ -5,7 +5,7 @@
 #include "spatial/clouds.hpp"
 
 namespace cmap {
-namespace {
+namespace nearest_test {
 
 /// The definition, point by point: squared distance in double, ties to the lowest index.
 NearestNeighbors brute_force(const PointCloud& data, const PointCloud& queries) {
@@ -121,5 +121,5 @@ TEST(Nearest, FlannAgrees) {
   }
 }
 
-}  // namespace
+}  // namespace nearest_test
 }  // namespace cmap

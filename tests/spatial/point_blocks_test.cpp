@@ -10,7 +10,7 @@
 #include "spatial/clouds.hpp"
 
 namespace cmap {
-namespace {
+namespace point_blocks_test {
 
 TEST(SortPoints, IsAPermutationWithThePositionsInPlace) {
   for (std::size_t n : {1, 16, 17, 5000}) {
@@ -98,5 +98,5 @@ TEST(RadixSort, EqualsStableSort) {
   EXPECT_EQ(values, expected);
 }
 
-}  // namespace
+}  // namespace point_blocks_test
 }  // namespace cmap

@@ -11,7 +11,7 @@
 #include "spatial/clouds.hpp"
 
 namespace cmap {
-namespace {
+namespace radius_test {
 
 float sq_color_distance(const Eigen::Vector3f& a, const Eigen::Vector3f& b) { return (a - b).squaredNorm(); }
 
@@ -195,5 +195,5 @@ TEST(NeighborhoodShapes, TooFewNeighborsHaveNoShape) {
   EXPECT_THROW(neighborhood_shapes(index, 0.0), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace radius_test
 }  // namespace cmap

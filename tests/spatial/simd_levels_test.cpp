@@ -7,7 +7,7 @@
 #include "spatial/clouds.hpp"
 
 namespace cmap {
-namespace {
+namespace simd_levels_test {
 
 class SimdLevels : public testing::TestWithParam<SimdLevel> {
  protected:
@@ -85,5 +85,5 @@ TEST_P(SimdLevels, NeighborhoodShapes) {
 INSTANTIATE_TEST_SUITE_P(All, SimdLevels, testing::Values(SimdLevel::kSse2, SimdLevel::kAvx2, SimdLevel::kAvx512),
                          [](const auto& level) { return std::string(simd_level_name(level.param)); });
 
-}  // namespace
+}  // namespace simd_levels_test
 }  // namespace cmap

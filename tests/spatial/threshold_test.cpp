@@ -8,7 +8,7 @@
 #include "spatial/clouds.hpp"
 
 namespace cmap {
-namespace {
+namespace threshold_test {
 
 TEST(FloatStep, IsThatOfSingleNumbers) {
   // 24 bits: from a power of two to the next, 2^23 steps.
@@ -61,5 +61,5 @@ TEST(ColorSearch, ARadiusMeansWhatWasTyped) {
   }
 }
 
-}  // namespace
+}  // namespace threshold_test
 }  // namespace cmap

@@ -8,7 +8,7 @@
 #include "cmap/core/execution.hpp"
 
 namespace cmap {
-namespace {
+namespace visibility_test {
 
 using Eigen::Vector3d;
 
@@ -128,5 +128,5 @@ TEST(Visibility, RefusesWhatItCannotHold) {
   EXPECT_THROW(VisibleSurfaces(index, std::vector<Vector3d>{}, {}), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace visibility_test
 }  // namespace cmap
