@@ -9,17 +9,11 @@
 namespace cmap {
 namespace {
 
-std::uint64_t hash_of(const VoxelIndex& index) {
-  std::uint64_t hash = 19;
-  for (const std::int64_t axis : index) hash = random_hash(static_cast<std::uint64_t>(axis), hash);
-  return hash;
-}
-
 /// Takes the voxels of one task.
 struct ColorUse {
   std::uint64_t min_points;
   double step;
-  std::uint64_t most_hash;  ///< of voxels in the sample; 0: none
+  bool with_sample;
   std::vector<ColoredVoxel> voxels;
   std::vector<ReferenceColors> sample;
   std::vector<double> of_halves;
@@ -34,7 +28,7 @@ struct ColorUse {
     ++counts[static_cast<std::size_t>(phase)];
     if (phase > 0) return;
     voxels.push_back({index, distance, colors.reference.n(), colors.estimate.n()});
-    if (hash_of(index) < most_hash) sample.push_back({index, colors.estimate.n(), reference});
+    if (with_sample) sample.push_back({index, 0, colors.estimate.n(), reference});
   }
   void halves(const ColorSums& one, const ColorSums& other) {
     if (one.n() < min_points || other.n() < min_points) return;
@@ -52,22 +46,27 @@ struct ColorUse {
   }
 };
 
-constexpr std::size_t kMostSampled = 20'000;
-
-/// The hash below which voxels are sampled: of twice as many as are wanted, if every voxel had no more points than it
-/// must.
-std::uint64_t sampled_hashes(const MapPair& pair, const PhaseOptions& options) {
-  if (!options.halves) return 0;
-  const double most_voxels = static_cast<double>(std::min(pair.reference.size(), pair.estimate.size())) /
-                             static_cast<double>(options.min_points);
-  const double share = 2.0 * kMostSampled / most_voxels;
-  return share < 1.0 ? static_cast<std::uint64_t>(share * 0x1p64) : ~std::uint64_t{0};
-}
-
-/// Those with the lowest hashes, in their order.
+/// Those with the lowest hashes of where they lie among the others, in the order of these, which their seeds become.
 void cut_sample(std::vector<ReferenceColors>& sample) {
-  std::ranges::sort(sample, {}, [](const ReferenceColors& voxel) { return hash_of(voxel.index); });
-  if (sample.size() > kMostSampled) sample.resize(kMostSampled);
+  constexpr std::size_t kMost = 20'000;
+  constexpr std::uint64_t kSeed = 19;
+  if (sample.empty()) return;
+  VoxelIndex first = sample.front().index;
+  for (const ReferenceColors& voxel : sample) {
+    for (std::size_t axis = 0; axis < 3; ++axis) first[axis] = std::min(first[axis], voxel.index[axis]);
+  }
+  for (ReferenceColors& voxel : sample) {
+    voxel.seed = kSeed;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      voxel.seed = random_hash(static_cast<std::uint64_t>(voxel.index[axis] - first[axis]), voxel.seed);
+    }
+  }
+  if (sample.size() > kMost) {
+    std::ranges::nth_element(sample, sample.begin() + kMost, {}, &ReferenceColors::seed);
+    sample.resize(kMost);
+    sample.shrink_to_fit();
+  }
+  std::ranges::sort(sample, {}, &ReferenceColors::seed);
 }
 
 }  // namespace
@@ -80,7 +79,7 @@ ColorWasserstein color_wasserstein(const MapPair& pair, const PhaseOptions& opti
   const ColorSource source(maps_of(pair), options.halves);
   const ColorUse none{std::max<std::uint64_t>(options.min_points, 2),
                       source.step,
-                      sampled_hashes(pair, options),
+                      options.halves,
                       {},
                       {},
                       {},

@@ -69,9 +69,9 @@ double sum_of(std::span<const double> values) {
 
 Record level_record(const Level& level) {
   Record record{.value = level.value};
-  if (std::isnan(level.value)) {
+  if (!std::isfinite(level.value)) {
     record.add("n", level.n);
-    return record.add("reason", level.reason.c_str());
+    return record.add("reason", std::isinf(level.value) ? "it is infinite" : level.reason.c_str());
   }
   return record.add("se", level.se).add("n", level.n);
 }

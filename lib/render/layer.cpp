@@ -111,7 +111,8 @@ Layer wasserstein_layer(const EvaluatedPair& evaluation, const LayerOptions& opt
   const double voxel_m = evaluation.options.awd_voxel_m;
   VoxelValues voxels(evaluation.pair.estimate, voxel_m);
   const PhaseOptions grid{.voxel_m = voxel_m, .min_points = evaluation.options.awd_min_points};
-  for (const auto& [index, distance_m] : voxel_wasserstein(evaluation.pair, grid).by_phase.front()) {
+  const VoxelWasserstein found = voxel_wasserstein(evaluation.pair, grid);
+  for (const auto& [index, distance_m] : found.by_phase.front()) {
     voxels.set(index, distance_m);
   }
   return voxel_layer(evaluation.pair.estimate, fmt::format("Wasserstein distance in voxels of {} m", voxel_m),
@@ -198,7 +199,8 @@ Layer color_wasserstein_layer(const EvaluatedPair& evaluation, const LayerOption
   const EvaluationOptions& o = evaluation.options;
   VoxelValues voxels(evaluation.pair.estimate, o.cw_voxel_m);
   const PhaseOptions grid{.voxel_m = o.cw_voxel_m, .min_points = o.cw_min_points};
-  for (const ColoredVoxel& voxel : color_wasserstein(evaluation.pair, grid).voxels) {
+  const ColorWasserstein found = color_wasserstein(evaluation.pair, grid);
+  for (const ColoredVoxel& voxel : found.voxels) {
     voxels.set(voxel.index, voxel.distance);
   }
   return voxel_layer(evaluation.pair.estimate, fmt::format("Color Wasserstein in voxels of {} m", o.cw_voxel_m),

@@ -174,8 +174,10 @@ TEST(RequireComparable, OnlyWhatBearsOnTheMetricsCounts) {
 }
 
 TEST(OneMap, ComparesWithItsLike) {
-  const SavedReport a = read_back("a", test::map_report_of(painted_sheet(400, 1)));
-  const SavedReport b = read_back("b", test::map_report_of(painted_sheet(300, 2)));
+  EvaluationOptions options;
+  options.ccs_voxel_m = 1.0;  // in which several points lie
+  const SavedReport a = read_back("a", test::map_report_of(painted_sheet(400, 1), options));
+  const SavedReport b = read_back("b", test::map_report_of(painted_sheet(300, 2), options));
   require_comparable({a, b});
   const std::string table = format_comparison({a, b}, {}, ComparisonFormat::kText);
   EXPECT_THAT(table, ContainsRegex("color consistency +CCS +↓ +unit RGB\\^2 +[0-9.]+. +[0-9.]+."));

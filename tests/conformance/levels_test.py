@@ -88,7 +88,7 @@ class Samples(Levels):
         value, oracle_error = wanted["value"], wanted["se_value"]
         self.near(found["value"], value, 5 * hypot(wanted["se"], oracle_error), what)
         if not what.endswith("color_wasserstein/chance"):  # the error of five draws is itself hardly known
-            self.near(found["value"], value, 5 * hypot(found["se"], oracle_error), f"{what} by its own error {found['se']}")
+            self.near(found["value"], value, 5 * hypot(found["se"] or 0, oracle_error), f"{what} by its own error {found['se']}")
 
     def test_sampled_levels(self):
         for name, (_, expected, found) in evaluate_samples().items():

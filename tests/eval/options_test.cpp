@@ -93,6 +93,15 @@ TEST(Options, TheirRecordIsAConfiguration) {
   }
 }
 
+TEST(Options, AChoiceOfNumbersMayBeWrittenAsOne) {
+  EvaluationOptions options;
+  apply_config(options, R"({"grid-phases": 27})", "a file");
+  EXPECT_EQ(options.grid_phases, GridPhases::kTwentySeven);
+  apply_config(options, R"({"grid-phases": "1"})", "a file");
+  EXPECT_EQ(options.grid_phases, GridPhases::kOne);
+  EXPECT_THROW(apply_config(options, R"({"grid-phases": 9})", "a file"), UsageError);
+}
+
 TEST(Options, TakeWholeNumbersInAnyNotation) {
   EvaluationOptions options;
   set(options, "awd-min-points", "1e3");
@@ -266,11 +275,11 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         PresetCase{"paper", "{}"}, PresetCase{"mapeval", "{}"},
         PresetCase{"indoor", R"({"thresholds": [0.1, 0.05, 0.02, 0.01, 0.005], "awd-voxel": 0.5, "lcr-radius": 0.05,
-                                 "ccs-voxel": 0.05})"},
+                                 "ccs-voxel": 0.05, "cw-voxel": 0.2})"},
         PresetCase{"outdoor", R"({"thresholds": [0.5, 0.3, 0.2, 0.1, 0.05], "awd-voxel": 2.0, "lcr-radius": 0.25,
                                   "ccs-voxel": 0.2})"},
         PresetCase{"aerial", R"({"thresholds": [1.0, 0.5, 0.3, 0.2, 0.1], "awd-voxel": 4.0, "lcr-radius": 0.5,
-                                 "ccs-voxel": 0.5})"}));
+                                 "ccs-voxel": 0.5, "cw-voxel": 2.0})"}));
 
 TEST(Preset, NamesAreListed) {
   EXPECT_EQ(preset_names(), (std::vector<std::string>{"paper", "indoor", "outdoor", "aerial", "mapeval"}));

@@ -18,6 +18,7 @@ struct ColoredVoxel {
 /// One of them with the reference's colors: a Gaussian of unit RGB in place of meters.
 struct ReferenceColors {
   VoxelIndex index;
+  std::uint64_t seed;  ///< from where it lies among the others
   std::uint64_t n_estimate;
   Gaussian reference;
 };
@@ -27,7 +28,7 @@ struct ColorWasserstein {
   std::vector<ColoredVoxel> voxels;  ///< of the grid at the world's origin, in an order that is always the same
   std::vector<double> phase_means;   ///< x slowest; the first is of `voxels`; NaN where no voxel qualifies
   std::vector<double> of_halves;     ///< distances between two random halves of the reference, if asked for; any order
-  std::vector<ReferenceColors> sample;  ///< of at most 20,000 voxels that their indices choose, if halves are asked for
+  std::vector<ReferenceColors> sample;  ///< of at most 20,000 of the voxels, ordered by seed; if halves are asked for
 };
 
 /// In one pass over the points. Both maps need colors (std::invalid_argument). Throws UsageError for voxels too small

@@ -54,8 +54,12 @@ class Setter {
     *v.value = std::move(bytes);
   }
   void operator()(const ChoiceValue& v) const {
-    const auto named = std::ranges::find_if(v.names, [&](const std::string& name) { return json_ == name; });
-    if (named == v.names.end()) refuse(json_, is_none_of(json_.is_string() ? json_.get<std::string>() : "", v.names));
+    // A choice of numbers may be written as one.
+    const std::string word = json_.is_number_integer() ? json_.dump()
+                             : json_.is_string()       ? json_.get<std::string>()
+                                                       : "";
+    const auto named = std::ranges::find(v.names, word);
+    if (named == v.names.end()) refuse(json_, is_none_of(word, v.names));
     v.set(static_cast<std::size_t>(named - v.names.begin()));
   }
   void operator()(const NumberListValue& v) const {

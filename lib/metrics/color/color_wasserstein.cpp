@@ -58,10 +58,8 @@ Level drawn_chance(LevelInputs& levels, const std::string& too_few) {
   std::vector<double> means(voxels.size());
   parallel_chunks(voxels.size(), kVoxelChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      std::uint64_t seed = 1;
-      for (const std::int64_t axis : voxels[i].index) seed = random_hash(static_cast<std::uint64_t>(axis), seed);
       for (std::uint64_t draw = 0; draw < kDraws; ++draw) {
-        const Gaussian drawn = drawn_gaussian(colors, voxels[i].n_estimate, seed + draw);
+        const Gaussian drawn = drawn_gaussian(colors, voxels[i].n_estimate, voxels[i].seed + draw);
         means[i] += wasserstein_distance(voxels[i].reference, drawn) / kDraws;
       }
     }
