@@ -76,6 +76,7 @@ TEST(MakeLayer, VoxelsPaintTheirPoints) {
   options.ccs_voxel_m = 1.0;
   options.awd_voxel_m = 1.0;
   options.awd_min_points = 2;
+  options.cw_min_points = 2;
   // Two points in one voxel and one in another; the estimate lies 0.25 m higher.
   const std::vector<Rgb8> colors{{0, 0, 0}, {255, 0, 0}, {9, 9, 9}};
   const PointCloud reference =
