@@ -1,6 +1,8 @@
 #include "cmap/metrics/color_gaussians.hpp"
 
 #include <cmath>
+#include <limits>
+#include <span>
 #include <stdexcept>
 
 #include "cmap/core/exact_sum.hpp"
@@ -37,7 +39,6 @@ struct ColorUse {
 
   void take(ColorUse other) {
     std::ranges::copy(other.voxels, std::back_inserter(voxels));
-    std::ranges::copy(other.sample, std::back_inserter(sample));
     std::ranges::copy(other.of_halves, std::back_inserter(of_halves));
     for (std::size_t phase = 0; phase < sums.size(); ++phase) {
       sums[phase] += other.sums[phase];
@@ -46,27 +47,44 @@ struct ColorUse {
   }
 };
 
-/// Those with the lowest hashes of where they lie among the others, in the order of these, which their seeds become.
-void cut_sample(std::vector<ReferenceColors>& sample) {
-  constexpr std::size_t kMost = 20'000;
-  constexpr std::uint64_t kSeed = 19;
-  if (sample.empty()) return;
-  VoxelIndex first = sample.front().index;
-  for (const ReferenceColors& voxel : sample) {
-    for (std::size_t axis = 0; axis < 3; ++axis) first[axis] = std::min(first[axis], voxel.index[axis]);
-  }
-  for (ReferenceColors& voxel : sample) {
-    voxel.seed = kSeed;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      voxel.seed = random_hash(static_cast<std::uint64_t>(voxel.index[axis] - first[axis]), voxel.seed);
+/// The first corner of the voxels that the tasks have taken.
+VoxelIndex first_index(std::span<const ColorUse> used) {
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  VoxelIndex first{kMost, kMost, kMost};
+  for (const ColorUse& use : used) {
+    for (const ColoredVoxel& voxel : use.voxels) {
+      for (std::size_t axis = 0; axis < 3; ++axis) first[axis] = std::min(first[axis], voxel.index[axis]);
     }
   }
-  if (sample.size() > kMost) {
-    std::ranges::nth_element(sample, sample.begin() + kMost, {}, &ReferenceColors::seed);
-    sample.resize(kMost);
-    sample.shrink_to_fit();
+  return first;
+}
+
+/// At most 20,000 of the tasks' samples: those with the lowest hashes of where they lie among the others, which become
+/// their seeds; ordered by these. The rest is dropped.
+std::vector<ReferenceColors> take_sample(std::span<ColorUse> used) {
+  constexpr std::size_t kMost = 20'000;
+  constexpr std::uint64_t kSeed = 19;
+  const VoxelIndex first = first_index(used);
+  std::vector<ReferenceColors*> all;
+  for (ColorUse& use : used) {
+    for (ReferenceColors& voxel : use.sample) {
+      voxel.seed = kSeed;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        voxel.seed = random_hash(static_cast<std::uint64_t>(voxel.index[axis] - first[axis]), voxel.seed);
+      }
+      all.push_back(&voxel);
+    }
   }
-  std::ranges::sort(sample, {}, &ReferenceColors::seed);
+  const auto seed = [](const ReferenceColors* voxel) { return voxel->seed; };
+  if (all.size() > kMost) {
+    std::ranges::nth_element(all, all.begin() + kMost, {}, seed);
+    all.resize(kMost);
+  }
+  std::ranges::sort(all, {}, seed);
+  std::vector<ReferenceColors> sample;
+  for (const ReferenceColors* voxel : all) sample.push_back(*voxel);
+  for (ColorUse& use : used) use.sample = {};
+  return sample;
 }
 
 }  // namespace
@@ -85,12 +103,13 @@ ColorWasserstein color_wasserstein(const MapPair& pair, const PhaseOptions& opti
                       {},
                       std::vector<ExactSum>(n_phases),
                       std::vector<std::uint64_t>(n_phases)};
+  std::vector<ColorUse> used = PhaseFold<ColorSource, ColorUse>(maps_of(pair), frame, source).run(none);
+  ColorWasserstein found;
+  found.sample = take_sample(used);
   ColorUse all = none;
-  for (ColorUse& use : PhaseFold<ColorSource, ColorUse>(maps_of(pair), frame, source).run(none))
-    all.take(std::move(use));
-
-  cut_sample(all.sample);
-  ColorWasserstein found{std::move(all.voxels), {}, std::move(all.of_halves), std::move(all.sample)};
+  for (ColorUse& use : used) all.take(std::move(use));
+  found.voxels = std::move(all.voxels);
+  found.of_halves = std::move(all.of_halves);
   for (std::size_t phase = 0; phase < n_phases; ++phase) {
     found.phase_means.push_back(all.sums[phase].value() / static_cast<double>(all.counts[phase]));
   }
