@@ -104,7 +104,7 @@ def defects(length_factor):
         "blurred": Defect(blurred, far[:-1], "m", "colors blurred", "the mean within about that radius"),
         "exposure": Defect(exposure, [5, 10, 20, 30, 40], "%", "exposure step", "half of the map that much brighter"),
         "bleeding": Defect(bleeding, lengths, "m", "color bleeding", "colors from that far aside spill over borders"),
-        "noise": Defect(geometric_noise, lengths, "m", "noise", "of that sigma on each coordinate"),
+        "noise": Defect(geometric_noise, lengths, "m", "geometric noise", "of that sigma on each coordinate"),
         "double_wall": Defect(double_wall, lengths, "m", "double walls", "half of the map a second time, that far aside"),
         "drift": Defect(drift, lengths, "m", "drift", "the map bends along x, at its end by that much"),
         "holes": Defect(holes, [2, 5, 10, 20, 40], "%", "holes", "that share of the plan is missing"),

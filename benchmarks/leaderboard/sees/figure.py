@@ -5,7 +5,7 @@ import defects
 import judgment
 import scenes
 
-LABEL, CELL_W, CELL_H, HEAD, GAP, MARGIN = 150, 78, 30, 64, 8, 14
+LABEL, CELL_W, CELL_H, CURVE_X, CURVE_W, HEAD, GAP, MARGIN = 140, 82, 30, 42, 32, 68, 8, 14
 RIGHT = ["#5b9bd0", "#82b4dd", "#a8cbe8", "#c8def1", "#e2eef8", "#eef5fb"]  # seen from the first, second ... size on
 WRONG, NOTHING, INK, GRAY = "#f6b26b", "#f4f4f2", "#22262b", "#8a8f96"
 UP, DOWN = 0.62, 0.26  # how much of a cell's height is for worse, for better scores
@@ -29,14 +29,16 @@ def tint(cell):
 
 def curve(cell, x, y, scale):
     """From no defect on; up is worse. Square roots, so that small changes show."""
-    base, points = y + CELL_H * (UP + 0.06), []
+    if not any(cell.changes):
+        return []
+    left, base, points = x + CURVE_X, y + CELL_H * (UP + 0.06), []
     for k, value in enumerate([0.0] + cell.changes):
-        if value is not None and scale > 0:
+        if value is not None:
             height = (abs(value) / scale) ** 0.5 * CELL_H * (UP if value > 0 else -DOWN)
-            points.append("%.1f,%.1f" % (x + 34 + k * (CELL_W - 42) / len(cell.changes), base - height))
-    line = '<line x1="%.1f" y1="%.1f" x2="%.1f" y2="%.1f" stroke="%s" stroke-width="0.5" stroke-dasharray="2 2"/>' % (
-        x + 34, base, x + CELL_W - 8, base, GRAY)
-    return line + '<polyline points="%s" fill="none" stroke="%s" stroke-width="1.4"/>' % (" ".join(points), INK)
+            points.append("%.1f,%.1f" % (left + k * CURVE_W / len(cell.changes), base - height))
+    return ['<line x1="%.1f" y1="%.1f" x2="%.1f" y2="%.1f" stroke="%s" stroke-width="0.5" stroke-dasharray="2 2"/>'
+            % (left, base, left + CURVE_W, base, GRAY),
+            '<polyline points="%s" fill="none" stroke="%s" stroke-width="1.4" stroke-linejoin="round"/>' % (" ".join(points), INK)]
 
 
 def drawn_cell(cell, x, y, scale):
@@ -48,7 +50,7 @@ def drawn_cell(cell, x, y, scale):
         parts.append(text(x + 4, y + CELL_H - 7, "▼%g" % wrong, 9.5, weight="bold"))
     if right is not None:
         parts.append(text(x + 4, y + (11 if wrong is not None else CELL_H / 2 + 3), "%g" % right, 9.5))
-    return parts + [curve(cell, x, y, scale)]
+    return parts + curve(cell, x, y, scale)
 
 
 def heads(planted, y):
@@ -57,7 +59,7 @@ def heads(planted, y):
         x = MARGIN + LABEL + k * CELL_W + 3
         first, last = defect.sizes[0], defect.sizes[-1]
         parts += [text(x, y + 12 * line, word, 11, weight="bold") for line, word in enumerate(defect.title.split())]
-        parts.append(text(x, y + 26, "%g to %g %s" % (first, last, defect.unit), 9.5, color=GRAY))
+        parts.append(text(x, y + 26, "%g–%g %s" % (first, last, defect.unit), 9.5, color=GRAY))
     return parts
 
 
@@ -71,21 +73,26 @@ def legend(y):
     return parts
 
 
+def drawn_row(row, cells, y):
+    scale = max((abs(c) for cell in cells for c in cell.changes if c is not None), default=0)
+    parts = [text(MARGIN, y + CELL_H / 2 + 3, row.title)]
+    for column, cell in enumerate(cells):
+        parts += drawn_cell(cell, MARGIN + LABEL + column * CELL_W, y, scale)
+    return parts
+
+
 def draw(scene, found):
     """One scene as SVG."""
     planted = defects.defects(scenes.SCENES[scene].length_factor)
-    rows, y = judgment.rows(scene), MARGIN + HEAD
-    parts = [text(MARGIN, MARGIN + 14, "What each number sees: %s" % scene, 15, weight="bold")] + heads(planted, MARGIN + 30)
-    for k, row in enumerate(rows):
-        y += GAP if k in (4, 13) else 0
-        cells = [found[row.title, name] for name in planted]
-        scale = max((abs(c) for cell in cells for c in cell.changes if c is not None), default=0)
-        parts.append(text(MARGIN, y + CELL_H / 2 + 3, row.title))
-        for column, cell in enumerate(cells):
-            parts += drawn_cell(cell, MARGIN + LABEL + column * CELL_W, y, scale)
-        y += CELL_H
-    width, height = 2 * MARGIN + LABEL + CELL_W * len(planted), y + 30
-    parts += legend(y + 16)
-    return ('<svg xmlns="http://www.w3.org/2000/svg" width="%d" height="%d" viewBox="0 0 %d %d" font-family="DejaVu Sans, Liberation Sans, '
-            'Arial, sans-serif">\n<rect width="100%%" height="100%%" fill="#ffffff"/>\n%s\n</svg>\n'
-            % (width, height, width, height, "\n".join(parts)))
+    parts = [text(MARGIN, MARGIN + 14, "What each number sees: %s" % scene, 15, weight="bold")] + heads(planted, MARGIN + 34)
+    y = MARGIN + HEAD
+    for group in judgment.groups(scene):
+        for row in group:
+            parts += drawn_row(row, [found[row.title, name] for name in planted], y)
+            y += CELL_H
+        y += GAP
+    parts += legend(y + 10)
+    size = {"width": 2 * MARGIN + LABEL + CELL_W * len(planted), "height": y + 26}
+    return ('<svg xmlns="http://www.w3.org/2000/svg" width="%(width)d" height="%(height)d" viewBox="0 0 %(width)d %(height)d" '
+            'font-family="DejaVu Sans, Liberation Sans, Arial, sans-serif">\n<rect width="100%%" height="100%%" fill="#ffffff"/>\n' % size
+            + "\n".join(parts) + "\n</svg>\n")

@@ -40,22 +40,25 @@ class Row:
         return phases["std"] if phases and phases["std"] is not None else 0.0
 
 
-def rows(scene):
-    """What is shown, in groups: the paper's color metrics, other ones of color, geometry."""
+def groups(scene):
+    """What is shown: the paper's color metrics, other ones of color, geometry."""
     own = scenes.SCENES[scene]
-    at = {"threshold_m": own.threshold_m}
-    named = "@%g" % own.threshold_m
-    return [
-        Row("CD", "color_distance"), Row("CF", "color_fidelity"), Row("LCR, 0.5 m", "local_color_recall", "paper"),
-        Row("CCS, 0.1 m", "color_consistency", "paper"),
-        Row("LCR, %g m" % own.lcr_radius_m, "local_color_recall"), Row("CW", "color_wasserstein"), Row("CIEDE2000", "delta_e"),
-        Row("median CD", "median_color_distance"), Row("exposure-free CD", "color_distance_exposure_free"), Row("PSNR", "color_psnr"),
-        Row("skill of CD", "color_distance", part="skill"), Row("skill of LCR, %g m" % own.lcr_radius_m, "local_color_recall", part="skill"),
-        Row("skill of CW", "color_wasserstein", part="skill"),
-        Row("Chamfer", "chamfer"), Row("RMSE", "rmse"), Row("accuracy" + named, "accuracy", **at), Row("fitness" + named, "fitness", **at),
-        Row("completeness" + named, "completeness", **at), Row("F-score" + named, "f_score", **at), Row("Hausdorff", "hausdorff"),
-        Row("AWD", "average_wasserstein"), Row("SCS", "spatial_consistency"),
-    ] + ([Row("MME", "mean_map_entropy")] if own.has_entropy else [])
+    at, named, near = {"threshold_m": own.threshold_m}, "@%g" % own.threshold_m, "LCR, %g m" % own.lcr_radius_m
+    paper = [Row("CD", "color_distance"), Row("CF", "color_fidelity"), Row("LCR, 0.5 m", "local_color_recall", "paper"),
+             Row("CCS, 0.1 m", "color_consistency", "paper")]
+    color = [Row(near, "local_color_recall"), Row("CW", "color_wasserstein"), Row("CIEDE2000", "delta_e"),
+             Row("median CD", "median_color_distance"), Row("exposure-free CD", "color_distance_exposure_free"), Row("PSNR", "color_psnr"),
+             Row("skill of CD", "color_distance", part="skill"), Row("skill of " + near, "local_color_recall", part="skill"),
+             Row("skill of CW", "color_wasserstein", part="skill")]
+    geometry = [Row("Chamfer", "chamfer"), Row("RMSE", "rmse"), Row("accuracy" + named, "accuracy", **at),
+                Row("fitness" + named, "fitness", **at), Row("completeness" + named, "completeness", **at),
+                Row("F-score" + named, "f_score", **at), Row("Hausdorff", "hausdorff"), Row("AWD", "average_wasserstein"),
+                Row("SCS", "spatial_consistency")] + [Row("MME", "mean_map_entropy")] * own.has_entropy
+    return [paper, color, geometry]
+
+
+def rows(scene):
+    return [row for group in groups(scene) for row in group]
 
 
 @dataclass

@@ -111,7 +111,7 @@ def write_values(path, measured):
 
 def parse():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--cmap-eval", type=Path, default=HERE.parents[2] / "build/release/tools/cmap_eval")
+    parser.add_argument("cmap_eval", type=Path)
     parser.add_argument("-o", "--output", type=Path, required=True)
     parser.add_argument("--scenes", nargs="+", choices=list(scenes.SCENES), default=list(scenes.SCENES))
     parser.add_argument("--seeds", nargs="+", type=int, default=[1, 2, 3])
