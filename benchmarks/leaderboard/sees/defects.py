@@ -3,6 +3,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+import scenes
 from neighbors import cell_keys, nearest, neighborhood_means
 
 SIDEWARD = np.array([1, 1, 0]) / np.sqrt(2)
@@ -93,8 +94,9 @@ def densified_by(jitter_m):
 LENGTHS = [0.01, 0.02, 0.05, 0.1, 0.2]
 
 
-def defects(length_factor):
-    """All of them by id, for a scene whose lengths are that many times the room's."""
+def planted(scene):
+    """All of them by id, with the lengths of that scene."""
+    length_factor = scenes.SCENES[scene].length_factor
     lengths = [round(length_factor * size, 3) for size in LENGTHS]
     far = [0.1, 0.2, 0.5, 1, 2, 5]
     return {

@@ -3,11 +3,12 @@ import html
 
 import defects
 import judgment
-import scenes
 
 LABEL, CELL_W, CELL_H, CURVE_X, CURVE_W, HEAD, GAP, MARGIN = 140, 82, 30, 42, 32, 68, 8, 14
 RIGHT = ["#5b9bd0", "#82b4dd", "#a8cbe8", "#c8def1", "#e2eef8", "#eef5fb"]  # seen from the first, second ... size on
 WRONG, NOTHING, INK, GRAY = "#f6b26b", "#f4f4f2", "#22262b", "#8a8f96"
+CURVES = ("Curves: the change against size, up is worse, in square roots, by the largest change in the row. No curve: nothing changes. "
+          "An end before the last size: no value there.")
 UP, DOWN = 0.62, 0.26  # how much of a cell's height is for worse, for better scores
 
 
@@ -64,9 +65,9 @@ def heads(planted, y):
 
 
 def legend(y):
-    parts, x = [], MARGIN + LABEL
-    keys = [(RIGHT[0], "the score gets worse from the smallest size on"), (RIGHT[3], "from a later size on (the number)"),
-            (WRONG, "▼ the worse map scores better"), (NOTHING, "not seen")]
+    parts, x = [text(MARGIN + LABEL, y + 20, CURVES, 10.5, color=GRAY)], MARGIN + LABEL
+    keys = [(RIGHT[0], "the score gets worse, from the smallest size on"), (RIGHT[3], "from a greater size on, the number"),
+            (WRONG, "▼ the worse map scores better, from that size on"), (NOTHING, "not seen")]
     for fill, words in keys:
         parts += [box(x, y - 10, 18, 13, fill), text(x + 24, y, words, 10.5)]
         x += 50 + 5.6 * len(words)
@@ -83,7 +84,7 @@ def drawn_row(row, cells, y):
 
 def draw(scene, found):
     """One scene as SVG."""
-    planted = defects.defects(scenes.SCENES[scene].length_factor)
+    planted = defects.planted(scene)
     parts = [text(MARGIN, MARGIN + 14, "What each number sees: %s" % scene, 15, weight="bold")] + heads(planted, MARGIN + 34)
     y = MARGIN + HEAD
     for group in judgment.groups(scene):
@@ -92,7 +93,7 @@ def draw(scene, found):
             y += CELL_H
         y += GAP
     parts += legend(y + 10)
-    size = {"width": 2 * MARGIN + LABEL + CELL_W * len(planted), "height": y + 26}
+    size = {"width": 2 * MARGIN + LABEL + CELL_W * len(planted), "height": y + 44}
     return ('<svg xmlns="http://www.w3.org/2000/svg" width="%(width)d" height="%(height)d" viewBox="0 0 %(width)d %(height)d" '
             'font-family="DejaVu Sans, Liberation Sans, Arial, sans-serif">\n<rect width="100%%" height="100%%" fill="#ffffff"/>\n' % size
             + "\n".join(parts) + "\n</svg>\n")

@@ -103,7 +103,7 @@ def judge(scene, by_seed):
     seeds = list(by_seed.values())
     found = {}
     for row in rows(scene):
-        for name in defects.defects(scenes.SCENES[scene].length_factor):
+        for name in defects.planted(scene):
             sizes = [size for defect, size in seeds[0] if defect == name]
             found[row.title, name] = judge_cell(row, seeds, name, sizes)
     return found
@@ -111,7 +111,7 @@ def judge(scene, by_seed):
 
 def markdown(scene, found):
     """Rows of metrics: the size from which each defect is seen."""
-    planted = defects.defects(scenes.SCENES[scene].length_factor)
+    planted = defects.planted(scene)
     lines = ["| | " + " | ".join("%s [%s]" % (d.title, d.unit) for d in planted.values()) + " |", "|---" * (len(planted) + 1) + "|"]
     for row in rows(scene):
         lines.append("| %s | %s |" % (row.title, " | ".join(words(found[row.title, name]) for name in planted)))

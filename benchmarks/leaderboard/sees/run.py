@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """What each number sees: planted defects of growing size on exact estimates of two simulated scenes, and how every metric moves.
 
-Writes OUT/table.md (which metric moves from which size on, and which the wrong way), OUT/values.csv (every value and skill) and
-OUT/SCENE.svg. Reports are kept in OUT, so that a run that was stopped goes on where it was.
+Writes OUT/table.md (which metric moves from which size on, and which the wrong way) and, of each scene, OUT/SCENE.csv (every value and
+skill) and OUT/SCENE.svg. Reports are kept in OUT, so that a run that was stopped goes on where it was.
 """
 import argparse
 import csv
@@ -28,7 +28,7 @@ EXACT = ("exact", 0)
 def cases(scene, quick):
     """The exact estimate, then every defect in every size; quick: the smallest and the largest."""
     yield EXACT
-    for name, defect in defects.defects(scenes.SCENES[scene].length_factor).items():
+    for name, defect in defects.planted(scene).items():
         yield from ((name, size) for size in (defect.sizes[::len(defect.sizes) - 1] if quick else defect.sizes))
 
 
@@ -37,7 +37,7 @@ def damaged(scene, seed, case, estimate):
     name, size = case
     if case == EXACT:
         return estimate
-    planted = defects.defects(scenes.SCENES[scene].length_factor)
+    planted = defects.planted(scene)
     rng = np.random.default_rng([seed, 3, list(planted).index(name), int(1000 * size)])
     return planted[name].make(*estimate, size, rng)
 
@@ -96,17 +96,14 @@ def measure(args):
     return {scene: {seed: done[asked.index((scene, seed))] for seed in args.seeds} for scene in args.scenes}
 
 
-def write_values(path, measured):
-    """A line for each scene, case and row of the figure: mean over the seeds, least, greatest."""
+def write_values(path, scene, seeds):
+    """A line for each case: the mean over the seeds of every number shown, empty where one of them has none."""
     with open(path, "w", newline="") as stream:
         writer = csv.writer(stream)
-        writer.writerow(["scene", "defect", "size", "metric", "mean", "least", "greatest"])
-        for scene, seeds in measured.items():
-            for row, case in itertools.product(judgment.rows(scene), next(iter(seeds.values()))):
-                values = [row.value(cases_of[case]) for cases_of in seeds.values()]
-                known = [v for v in values if v is not None]
-                numbers = ["%.5g" % f(known) for f in (np.mean, min, max)] if len(known) == len(values) else [""] * 3
-                writer.writerow([scene, case[0], "%g" % case[1], row.title, *numbers])
+        writer.writerow(["defect", "size"] + [row.title for row in judgment.rows(scene)])
+        for case in next(iter(seeds.values())):
+            values = [[row.value(measured[case]) for measured in seeds.values()] for row in judgment.rows(scene)]
+            writer.writerow([case[0], "%g" % case[1]] + ["" if None in known else "%.5g" % np.mean(known) for known in values])
 
 
 def parse():
@@ -126,9 +123,9 @@ def parse():
 def main():
     args = parse()
     measured = measure(args)
-    write_values(args.output / "values.csv", measured)
     tables = []
     for scene, seeds in measured.items():
+        write_values(args.output / (scene + ".csv"), scene, seeds)
         found = judgment.judge(scene, seeds)
         (args.output / (scene + ".svg")).write_text(figure.draw(scene, found))
         tables += ["### %s" % scene.capitalize(), "", judgment.markdown(scene, found), ""]
