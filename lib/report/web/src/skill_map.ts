@@ -50,7 +50,7 @@ function skillCell(row: RadiusRow, i: number, used: boolean): HTMLElement {
   const cell = element(
     'td',
     { class: `${used ? 'used ' : ''}${skill === null ? 'none' : 'some'}`, title: levels, 'data-value': String(skill) },
-    skill === null ? dash : skill.toFixed(2),
+    skill === null ? dash : skill.toFixed(2).replace(/^-(0\.00)$/, '$1'),
     used ? element('span', { class: 'for-readers' }, ' (as evaluated)') : undefined,
   );
   if (skill !== null) paint(cell, skill);
