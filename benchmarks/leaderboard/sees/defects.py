@@ -16,7 +16,11 @@ class Defect:
     sizes: list
     unit: str
     title: str
-    says: str
+
+
+def half(points):
+    """The points of the farther half along x."""
+    return points[:, 0] > (points[:, 0].min() + points[:, 0].max()) / 2
 
 
 def shuffled(points, colors, size, rng):
@@ -29,30 +33,37 @@ def shuffled(points, colors, size, rng):
 
 
 def one_color(points, colors, size, rng):
+    """The mean color, of that share of the points."""
     return points, np.where((rng.random(len(points)) < size / 100)[:, None], colors.mean(axis=0), colors)
 
 
 def color_noise(points, colors, size, rng):
+    """Of that sigma on each channel of 0 to 1."""
     return points, colors + size * rng.standard_normal(colors.shape)
 
 
 def blurred(points, colors, size, rng):
+    """The mean within about that radius."""
     return points, neighborhood_means(points, colors, size)
 
 
 def exposure(points, colors, size, rng):
+    """One half brighter."""
     return points, np.where(half(points)[:, None], colors * (1 + size / 100), colors)
 
 
 def bleeding(points, colors, size, rng):
+    """The color of the point that far aside, so that colors spill over borders."""
     return points, colors[nearest(points, points + size * SIDEWARD, 1.01 * size)]
 
 
 def geometric_noise(points, colors, size, rng):
+    """Of that sigma on each coordinate."""
     return points + size * rng.standard_normal(points.shape), colors
 
 
 def double_wall(points, colors, size, rng):
+    """One half a second time, that far aside."""
     copied = half(points)
     return np.concatenate([points, points[copied] + size * SIDEWARD]), np.concatenate([colors, colors[copied]])
 
@@ -72,13 +83,9 @@ def drift(points, colors, size, rng):
 
 
 def thinned(points, colors, size, rng):
+    """That many times fewer points."""
     keep = rng.permutation(len(points))[:int(len(points) / size)]
     return points[keep], colors[keep]
-
-
-def half(points):
-    """The points of the farther half along x."""
-    return points[:, 0] > (points[:, 0].min() + points[:, 0].max()) / 2
 
 
 def densified_by(jitter_m):
@@ -100,17 +107,16 @@ def planted(scene):
     lengths = [round(length_factor * size, 3) for size in LENGTHS]
     far = [0.1, 0.2, 0.5, 1, 2, 5]
     return {
-        "shuffled": Defect(shuffled, far, "m", "colors shuffled", "exchanged at random within cubes of that edge"),
-        "one_color": Defect(one_color, [10, 20, 40, 70, 100], "%", "one color", "that share of the points in the mean color"),
-        "color_noise": Defect(color_noise, [0.02, 0.05, 0.1, 0.2, 0.4], "RGB", "color noise", "of that sigma on each channel of 0 to 1"),
-        "blurred": Defect(blurred, far[:-1], "m", "colors blurred", "the mean within about that radius"),
-        "exposure": Defect(exposure, [5, 10, 20, 30, 40], "%", "exposure step", "half of the map that much brighter"),
-        "bleeding": Defect(bleeding, lengths, "m", "color bleeding", "colors from that far aside spill over borders"),
-        "noise": Defect(geometric_noise, lengths, "m", "geometric noise", "of that sigma on each coordinate"),
-        "double_wall": Defect(double_wall, lengths, "m", "double walls", "half of the map a second time, that far aside"),
-        "drift": Defect(drift, lengths, "m", "drift", "the map bends along x, at its end by that much"),
-        "holes": Defect(holes, [2, 5, 10, 20, 40], "%", "holes", "that share of the plan is missing"),
-        "thinned": Defect(thinned, [2, 4, 8, 16], "times", "thinned", "that many times fewer points"),
-        "densified": Defect(densified_by(0.02 * length_factor), [2, 4, 8], "times", "densified",
-                            "copies of all points with a jitter of %g m" % (0.02 * length_factor)),
+        "shuffled": Defect(shuffled, far, "m", "colors shuffled"),
+        "one_color": Defect(one_color, [10, 20, 40, 70, 100], "%", "one color"),
+        "color_noise": Defect(color_noise, [0.02, 0.05, 0.1, 0.2, 0.4], "RGB", "color noise"),
+        "blurred": Defect(blurred, far[:-1], "m", "colors blurred"),
+        "exposure": Defect(exposure, [5, 10, 20, 30, 40], "%", "exposure step"),
+        "bleeding": Defect(bleeding, lengths, "m", "color bleeding"),
+        "noise": Defect(geometric_noise, lengths, "m", "geometric noise"),
+        "double_wall": Defect(double_wall, lengths, "m", "double walls"),
+        "drift": Defect(drift, lengths, "m", "drift"),
+        "holes": Defect(holes, [2, 5, 10, 20, 40], "%", "holes"),
+        "thinned": Defect(thinned, [2, 4, 8, 16], "times", "thinned"),
+        "densified": Defect(densified_by(0.02 * length_factor), [2, 4, 8], "times", "densified"),
     }
