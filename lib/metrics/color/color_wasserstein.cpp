@@ -81,7 +81,7 @@ extern constinit const Metric color_wasserstein{
              .better = "lower",
              .definition =
                  "Mean over voxels that both maps fill of the 2-Wasserstein distance between the Gaussians of "
-                 "their colors: neither color noise nor gray nor density improves it.",
+                 "their colors: neither color noise nor gray improves it.",
              .needs_color = true},
     .prepare =
         [](MetricInputs& inputs) {
