@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t kSampleSeed = 18;
 constexpr std::size_t kLeastVoxels = 20;
-constexpr const char* kNothing = "nothing to find it from";
+constexpr const char* kNothing = "no point of the reference has another one that counts";
 
 struct Hashed {
   std::uint64_t hash;
