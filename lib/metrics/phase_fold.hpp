@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 #include <iterator>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <tuple>
@@ -87,14 +89,16 @@ class PhaseFold {
     const std::vector<std::span<const PairedCell>> tasks = paired_tasks(cells);
     std::vector<Use> used(tasks.size(), prototype);
     std::vector<std::vector<OpenVoxel>> open(tasks.size());
+    TablePool pool(frame_.parts_per_axis());
     parallel_chunks(tasks.size(), 1, [&](std::size_t i, std::size_t) {
-      Tables tables(frame_.parts_per_axis());
+      std::unique_ptr<Tables> tables = pool.take();
       for (const PairedCell& cell : tasks[i]) {
-        sum_points(cell, tables);
-        if (source_.halves) take_halves(tables, used[i]);
-        for (int phase = 0; phase < frame_.n_phases(); ++phase) hand_out(phase, cell.cell, tables, used[i], open[i]);
-        tables.clear();
+        sum_points(cell, *tables);
+        if (source_.halves) take_halves(*tables, used[i]);
+        for (int phase = 0; phase < frame_.n_phases(); ++phase) hand_out(phase, cell.cell, *tables, used[i], open[i]);
+        tables->clear();
       }
+      pool.give(std::move(tables));
     });
     close(open, prototype, used);
     return used;
@@ -123,6 +127,29 @@ class PhaseFold {
     LocalGrid<Moments> half;  ///< of the reference, as long as it is apart
     LocalGrid<PhaseVoxel<Moments>> voxels;
     LocalGrid<std::array<Moments, 2>> halves;
+  };
+
+  /// Tables that tasks leave to each other: making them costs as much as some thousand points.
+  class TablePool {
+   public:
+    explicit TablePool(int parts_per_axis) : parts_per_axis_(parts_per_axis) {}
+
+    std::unique_ptr<Tables> take() {
+      const std::lock_guard lock(mutex_);
+      if (idle_.empty()) return std::make_unique<Tables>(parts_per_axis_);
+      std::unique_ptr<Tables> tables = std::move(idle_.back());
+      idle_.pop_back();
+      return tables;
+    }
+    void give(std::unique_ptr<Tables> tables) {
+      const std::lock_guard lock(mutex_);
+      idle_.push_back(std::move(tables));
+    }
+
+   private:
+    int parts_per_axis_;
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<Tables>> idle_;
   };
 
   std::vector<CellRun> runs_of(Side side) const {
