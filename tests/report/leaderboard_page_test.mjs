@@ -2,7 +2,7 @@
 // one of CMAP_COMPARE. Needs what browser.mjs says.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { copyFileSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -19,15 +19,18 @@ function makePages() {
   writeFileSync(manifest, JSON.stringify(samples));
   const board = join(folder, 'board');
   const data = ['--data-root', join(source, 'data_samples')];
+  const plain = join(folder, 'plain.html');
+  execFileSync(process.env.CMAP_LEADERBOARD, [manifest, ...data, '-o', board, '--quiet', '--plain-ranking']);
+  copyFileSync(join(board, 'index.html'), plain);
   execFileSync(process.env.CMAP_LEADERBOARD, [manifest, ...data, '-o', board, '--quiet']);
   const reports = ['estimate', 'the~20reference~20itself'].map((name) => join(board, 'pairs/town', name, 'report.json'));
   const comparison = join(folder, 'comparison.html');
   const names = ['--names', 'estimate,reference', '--baseline', reports[0]];
   execFileSync(process.env.CMAP_COMPARE, [...reports, ...names, '--format', 'html', '-o', comparison]);
-  return [join(board, 'index.html'), comparison];
+  return [join(board, 'index.html'), plain, comparison];
 }
 
-const [leaderboard, comparison] = makePages();
+const [leaderboard, plainRanking, comparison] = makePages();
 const messages = [];
 const requests = [];
 let browser;
@@ -87,12 +90,24 @@ test('the keyboard sorts and goes from heading to heading', async () => {
   assert.deepEqual(await rowNames(table), ['Ours', 'SLAM3R', 'V-Long', 'V-Sim(3)', 'V-SL(4)'], 'names as text');
 });
 
+const looksOf = (opened) =>
+  opened
+    .locator('[id="published-chamfer"] tbody td:nth-child(2)')
+    .evaluateAll((all) => all.map((cell) => [cell.className, getComputedStyle(cell).backgroundColor]));
+
 test('best and second best are marked, and differ from each other and the rest', async () => {
-  const cells = published('chamfer').locator('tbody td:nth-child(2)');
-  const looks = await cells.evaluateAll((all) => all.map((cell) => [cell.className, getComputedStyle(cell).backgroundColor]));
+  const looks = await looksOf(await open(plainRanking));
   const color = (name) => looks.find(([look]) => look === name)[1];
   assert.equal(looks.filter(([look]) => look === 'value best').length, 1);
   assert.equal(new Set(['value best', 'value second', 'value'].map(color)).size, 3);
+});
+
+test('the best of what nobody tested has a look of its own, and there is no second', async () => {
+  const looks = await looksOf(page);
+  const color = (name) => looks.find(([look]) => look === name)[1];
+  assert.equal(looks.filter(([look]) => look === 'value untested').length, 1);
+  assert.notEqual(color('value untested'), color('value'));
+  assert.ok(looks.every(([look]) => !/best|second/.test(look)));
 });
 
 test('color distances have their normalized columns and a footnote', async () => {
