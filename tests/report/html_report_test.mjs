@@ -449,8 +449,9 @@ test('400 pixels are wide enough', async () => {
   const opened = await openReady({ viewport: { width: 400, height: 800 } });
   const width = await opened.evaluate('document.documentElement.scrollWidth');
   assert.ok(width <= 400, `the page is ${width} pixels wide`);
-  const table = await opened.locator('.table-frame').evaluate((frame) => [frame.scrollWidth, frame.clientWidth]);
-  assert.ok(table[0] <= table[1], `the table takes ${table[0]} of ${table[1]} pixels`);
+  const tables = await opened.locator('.table-frame').evaluateAll((all) => all.map((frame) => [frame.scrollWidth, frame.clientWidth]));
+  assert.ok(tables.length > 0);
+  for (const [needed, there] of tables) assert.ok(needed <= there, `a table takes ${needed} of ${there} pixels`);
   await opened.context().close();
 });
 
