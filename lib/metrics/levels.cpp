@@ -1,5 +1,7 @@
 #include "cmap/metrics/levels.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +16,6 @@ namespace cmap {
 namespace {
 
 constexpr std::uint64_t kSampleSeed = 18;
-constexpr std::size_t kLeastVoxels = 20;
 constexpr const char* kNothing = "no point of the reference has another one that counts";
 
 struct Hashed {
@@ -155,9 +156,12 @@ Level self_share(LevelInputs& levels, double threshold_m) {
   return share_level(static_cast<std::uint64_t>(std::ranges::count_if(pairs, is_in)), pairs.size());
 }
 
-Level voxel_level(std::span<const double> values, const std::string& too_few) {
-  if (values.size() < kLeastVoxels) return {.n = values.size(), .reason = too_few};
-  return mean_level(values);
+Level halves_level(std::span<const double> distances, double voxel_m, std::uint64_t min_points) {
+  constexpr std::size_t kLeastVoxels = 20;
+  if (distances.size() >= kLeastVoxels) return mean_level(distances);
+  return {.n = distances.size(),
+          .reason = fmt::format("fewer than {} voxels of {} m hold {} points of both halves of the reference",
+                                kLeastVoxels, voxel_m, min_points)};
 }
 
 void add_floor(Record& record, const Level& floor) { record.add("floor", level_record(floor)); }

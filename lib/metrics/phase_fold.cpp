@@ -29,17 +29,4 @@ std::vector<PairedCell> paired_cells(std::span<const CellRun> reference, std::sp
   return cells;
 }
 
-std::vector<std::span<const PairedCell>> paired_tasks(std::span<const PairedCell> cells) {
-  std::vector<std::span<const PairedCell>> tasks;
-  std::size_t begin = 0, n_points = 0;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    n_points += cells[i].n_points();
-    if (n_points < kTaskPoints && i + 1 < cells.size()) continue;
-    tasks.push_back(cells.subspan(begin, i + 1 - begin));
-    begin = i + 1;
-    n_points = 0;
-  }
-  return tasks;
-}
-
 }  // namespace cmap

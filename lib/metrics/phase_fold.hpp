@@ -47,9 +47,6 @@ struct PairedCell {
 /// All cells of both maps, ordered.
 std::vector<PairedCell> paired_cells(std::span<const CellRun> reference, std::span<const CellRun> estimate);
 
-/// Whole cells for one task each: enough points to be worth one, where there are so many.
-std::vector<std::span<const PairedCell>> paired_tasks(std::span<const PairedCell> cells);
-
 inline constexpr int kPhaseCellBits = 5;  ///< a cell's parts fit the second-level cache; larger ones have less border
 inline constexpr std::uint64_t kHalvesSeed = 17;
 
@@ -68,7 +65,7 @@ inline BothSides<const IndexedMap*> maps_of(const MapPair& pair) { return {&pair
 ///   bool halves                                            whether a random half of the reference is asked for.
 /// `Use`, one for each task, is a copy of `prototype` and has, once for each voxel,
 ///   void voxel(int phase, const VoxelIndex&, const PhaseVoxel<Moments>&),
-///   void halves(const Moments& half, const Moments& all)   of the reference, in phase 0.
+///   void halves(const Moments& one, const Moments& other)  of the reference, in phase 0.
 template <class Source, class Use>
 class PhaseFold {
  public:
@@ -86,7 +83,9 @@ class PhaseFold {
   std::vector<Use> run(const Use& prototype) const {
     const std::vector<CellRun> reference = runs_of(Side::kReference), estimate = runs_of(Side::kEstimate);
     const std::vector<PairedCell> cells = paired_cells(reference, estimate);
-    const std::vector<std::span<const PairedCell>> tasks = paired_tasks(cells);
+    const auto tasks = point_tasks(
+        std::span<const PairedCell>(cells), [](const PairedCell& cell) { return cell.n_points(); },
+        [](std::size_t) { return true; });
     std::vector<Use> used(tasks.size(), prototype);
     std::vector<std::vector<OpenVoxel>> open(tasks.size());
     TablePool pool(frame_.parts_per_axis());

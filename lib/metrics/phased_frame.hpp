@@ -3,10 +3,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <vector>
 
 #include "cmap/geometry/voxel_map.hpp"
-#include "cmap/metrics/wasserstein.hpp"
 #include "voxels.hpp"
 
 namespace cmap {

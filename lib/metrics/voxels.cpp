@@ -70,17 +70,9 @@ std::vector<CellRun> cell_runs(const Bvh& cloud, const VoxelFrame& frame, int ce
 }
 
 std::vector<std::span<const CellRun>> cell_tasks(std::span<const CellRun> runs) {
-  std::vector<std::span<const CellRun>> tasks;
-  std::size_t begin = 0, n_points = 0;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    n_points += runs[i].end - runs[i].begin;
-    const bool ends_cell = i + 1 == runs.size() || runs[i + 1].cell != runs[i].cell;
-    if (!ends_cell || (n_points < kTaskPoints && i + 1 < runs.size())) continue;
-    tasks.push_back(runs.subspan(begin, i + 1 - begin));
-    begin = i + 1;
-    n_points = 0;
-  }
-  return tasks;
+  return point_tasks(
+      runs, [](const CellRun& run) { return run.end - run.begin; },
+      [&](std::size_t i) { return runs[i + 1].cell != runs[i].cell; });
 }
 
 }  // namespace cmap

@@ -30,6 +30,23 @@ std::vector<CellRun> cell_runs(const Bvh& cloud, const VoxelFrame& frame, int ce
 /// Points of the least work that is worth a task.
 inline constexpr std::size_t kTaskPoints = std::size_t{1} << 16;
 
+/// Items in their order, cut into one span a task: each of enough points to be worth one, where there are so many, and
+/// ended only where may_end(i) allows it.
+template <class Item, class PointsOf, class MayEnd>
+std::vector<std::span<const Item>> point_tasks(std::span<const Item> items, PointsOf points_of, MayEnd may_end) {
+  std::vector<std::span<const Item>> tasks;
+  std::size_t begin = 0, n_points = 0;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const bool is_last = i + 1 == items.size();
+    n_points += points_of(items[i]);
+    if (!is_last && (n_points < kTaskPoints || !may_end(i))) continue;
+    tasks.push_back(items.subspan(begin, i + 1 - begin));
+    begin = i + 1;
+    n_points = 0;
+  }
+  return tasks;
+}
+
 /// Runs of whole cells for one task each: enough points to be worth one, where there are so many.
 std::vector<std::span<const CellRun>> cell_tasks(std::span<const CellRun> runs);
 

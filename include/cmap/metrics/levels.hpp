@@ -78,8 +78,8 @@ std::vector<SelfPair> self_pairs_within(LevelInputs& levels, const std::optional
 std::vector<double> self_distances(LevelInputs& levels, const std::optional<double>& threshold_m = {});
 Level self_share(LevelInputs& levels, double threshold_m);
 
-/// The mean over voxels; missing below 20.
-Level voxel_level(std::span<const double> values, const std::string& too_few);
+/// The mean distance between two halves of the reference, over voxels of at least min_points of both; missing below 20.
+Level halves_level(std::span<const double> distances, double voxel_m, std::uint64_t min_points);
 
 /// Adds {floor: {value, se, n}} or {value: null, n, reason}; and skill where both levels are there.
 void add_floor(Record& record, const Level& floor);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cmap/metrics/map_pair.hpp"
+#include "cmap/metrics/metric_options.hpp"
 
 namespace cmap {
 
@@ -48,6 +49,11 @@ struct PhaseOptions {
   int parts_per_axis = 1;        ///< 1: the grid at the world's origin alone; 2 or 3: 8 or 27 phases
   bool halves = false;
 };
+
+/// Of a metric of voxels, as the options say.
+inline PhaseOptions phase_options(const MetricOptions& options, double voxel_m, std::uint64_t min_points) {
+  return {voxel_m, min_points, static_cast<int>(options.grid_phases), !options.no_levels};
+}
 
 /// In one pass over the points. Throws UsageError for voxels too small to be counted. The same bits for any number of
 /// threads and any order of the points (but for the halves, which the original index decides).

@@ -87,10 +87,7 @@ extern constinit const Metric color_wasserstein{
         [](MetricInputs& inputs) {
           const MetricOptions& o = inputs.options();
           inputs.color_wasserstein =
-              cmap::color_wasserstein(*inputs.pair, {.voxel_m = o.cw_voxel_m,
-                                                     .min_points = o.cw_min_points,
-                                                     .parts_per_axis = static_cast<int>(o.grid_phases),
-                                                     .halves = !o.no_levels});
+              cmap::color_wasserstein(*inputs.pair, phase_options(o, o.cw_voxel_m, o.cw_min_points));
         },
     .sides = Sides::kEstimate,
     .columns =
@@ -123,12 +120,8 @@ extern constinit const Metric color_wasserstein{
     .levels =
         [](Record& record, LevelInputs& levels, std::vector<Warning>&) {
           const MetricOptions& o = levels.inputs.options();
-          const auto too_few = [&](const char* what) {
-            return fmt::format("fewer than 20 voxels of {} m hold {} points of {}", o.cw_voxel_m, o.cw_min_points,
-                               what);
-          };
           Levels both;
-          both.floor = voxel_level(levels.inputs.color_wasserstein->of_halves, too_few("both halves of the reference"));
+          both.floor = halves_level(levels.inputs.color_wasserstein->of_halves, o.cw_voxel_m, o.cw_min_points);
           both.chance = drawn_chance(
               levels, fmt::format("no voxel of {} m holds {} points of both maps", o.cw_voxel_m, o.cw_min_points));
           add_levels_of(record, both, "lower");

@@ -65,10 +65,7 @@ extern constinit const Metric average_wasserstein{
     .levels =
         [](Record& record, LevelInputs& levels, std::vector<Warning>&) {
           const MetricOptions& o = levels.inputs.options();
-          add_floor(record, voxel_level(levels.inputs.wasserstein->of_halves,
-                                        fmt::format("fewer than 20 voxels of {} m hold {} points of both halves of the "
-                                                    "reference",
-                                                    o.awd_voxel_m, o.awd_min_points)));
+          add_floor(record, halves_level(levels.inputs.wasserstein->of_halves, o.awd_voxel_m, o.awd_min_points));
         }};
 
 }  // namespace catalog

@@ -19,10 +19,7 @@ inline std::span<const VoxelDistance> wasserstein_voxels(const MetricInputs& inp
 inline void prepare_wasserstein(MetricInputs& inputs) {
   if (inputs.wasserstein) return;
   const MetricOptions& o = inputs.options();
-  inputs.wasserstein = voxel_wasserstein(*inputs.pair, {.voxel_m = o.awd_voxel_m,
-                                                        .min_points = o.awd_min_points,
-                                                        .parts_per_axis = static_cast<int>(o.grid_phases),
-                                                        .halves = !o.no_levels});
+  inputs.wasserstein = voxel_wasserstein(*inputs.pair, phase_options(o, o.awd_voxel_m, o.awd_min_points));
 }
 
 /// Said once, whichever of the two metrics is asked for.
