@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "cmap/align/verdict.hpp"
+
 namespace cmap {
 
 /// What a registration found, and how far to trust it.
@@ -32,6 +34,7 @@ struct Alignment {
 
   double voxel_m = 0.0;         ///< of the last level, in the target's units; 0: not thinned
   double max_distance_m = 0.0;  ///< of the last level
+  Judgment judgment;
   std::vector<std::string> warnings;
 };
 
