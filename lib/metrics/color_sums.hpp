@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -12,13 +13,22 @@
 
 namespace cmap {
 
-/// Number, sums and sums of products of colors in whole steps, in 63 bits: neither the order nor the grouping of points
-/// changes a bit. 8-bit and 16-bit colors are whole; others are rounded to steps of 2^-16 of a 16-bit level at least.
+/// Number, sums and sums of products of colors in whole steps: neither the order nor the grouping of points changes a
+/// bit. Words of 32 bits hold 8-bit colors of 2^16 points.
+template <class Word>
 class ColorSums {
  public:
-  void add(const std::array<std::uint64_t, 3>& color) {
+  using Words = std::array<Word, 10>;  ///< n; r, g, b; rr, rg, rb, gg, gb, bb
+
+  ColorSums() = default;
+  template <class Other>
+  explicit ColorSums(const ColorSums<Other>& other) {
+    std::ranges::copy(other.words(), sums_.begin());
+  }
+
+  void add(const std::array<Word, 3>& color) {
     const auto [r, g, b] = color;
-    const std::array<std::uint64_t, 10> terms{1, r, g, b, r * r, r * g, r * b, g * g, g * b, b * b};
+    const Words terms{1, r, g, b, r * r, r * g, r * b, g * g, g * b, b * b};
     for (std::size_t i = 0; i < terms.size(); ++i) sums_[i] += terms[i];
   }
   ColorSums& operator+=(const ColorSums& other) {
@@ -27,10 +37,11 @@ class ColorSums {
   }
 
   std::uint64_t n() const { return sums_[0]; }
+  const Words& words() const { return sums_; }
 
   /// Of at least one point, in the unit of which a step is `step`. About whole numbers near the means, so that colors
   /// that are all alike have a scatter of 0.
-  Gaussian gaussian(double step) const {
+  Gaussian gaussian(double step) const requires(sizeof(Word) == 8) {
     const double per_point = 1.0 / in_double(n());
     Gaussian gaussian;
     gaussian.n = n();
@@ -60,28 +71,36 @@ class ColorSums {
   static double in_double(std::uint64_t word) { return static_cast<double>(static_cast<std::int64_t>(word)); }
   std::uint64_t sum(std::size_t channel) const { return sums_[1 + channel]; }
 
-  std::array<std::uint64_t, 10> sums_{};  ///< n; r, g, b; rr, rg, rb, gg, gb, bb
+  Words sums_{};
 };
 
-/// The colors of points for a PhaseFold. Of maps of n points a color has so many bits that n squares fit 63: 16 for
-/// 2^31 points, 24 for 2^15.
+using WideColorSums = ColorSums<std::uint64_t>;
+using NarrowColorSums = ColorSums<std::uint32_t>;
+
+inline constexpr std::uint64_t kMostNarrow = std::uint64_t{1} << 16;  ///< points whose sums are right in narrow words
+
+inline bool has_8_bit_colors(const BothSides<const IndexedMap*>& maps) {
+  const auto is_8_bit = [](const IndexedMap* map) { return map == nullptr || map->has_8_bit_colors; };
+  return is_8_bit(maps.estimate) && is_8_bit(maps.reference);
+}
+
+/// The colors of points for a PhaseFold, in steps of their own where all are 8-bit. Otherwise, of maps of n points, a
+/// color has so many bits that n squares fit 63: 16 for 2^31 points, 24 for 2^15.
+template <class Word>
 struct ColorSource {
-  using Moments = ColorSums;
+  using Moments = ColorSums<Word>;
 
   ColorSource(const BothSides<const IndexedMap*>& maps, bool with_halves) : halves(with_halves) {
     std::size_t n = 1;
     for (const IndexedMap* map : {maps.estimate, maps.reference}) n = map == nullptr ? n : std::max(n, map->size());
     const int bits = std::min(24, (63 - static_cast<int>(std::bit_width(n))) / 2);
-    steps_per_level = 257.0 * std::ldexp(1.0, bits - 16);
+    steps_per_level = has_8_bit_colors(maps) ? 1.0 : 257.0 * std::ldexp(1.0, bits - 16);
     step = 1.0 / (255.0 * steps_per_level);
   }
 
   bool counts(const IndexedMap& map, std::size_t slot) const { return map.has_color_at(slot); }
   void add(Moments& moments, const IndexedMap& map, std::size_t slot, const Eigen::Vector3d&, const VoxelKey&) const {
     const Eigen::Vector3f color = color_at(map.colors, slot);
-    const auto whole = [&](float level) {
-      return static_cast<std::uint64_t>(static_cast<std::int64_t>(steps_per_level * static_cast<double>(level) + 0.5));
-    };
     moments.add({whole(color.x()), whole(color.y()), whole(color.z())});
   }
   static constexpr bool kHasCorners = false;
@@ -90,6 +109,14 @@ struct ColorSource {
   bool halves;
   double steps_per_level;  ///< in 1/255
   double step;             ///< unit RGB
+
+ private:
+  Word whole(float level) const {
+    if constexpr (sizeof(Word) == 4) return static_cast<Word>(static_cast<std::int32_t>(level));
+    return static_cast<Word>(static_cast<std::int64_t>(steps_per_level * static_cast<double>(level) + 0.5));
+  }
 };
+
+using WideColorSource = ColorSource<std::uint64_t>;
 
 }  // namespace cmap

@@ -15,10 +15,10 @@ struct VoxelCount {
 
 struct CountUse {
   std::vector<VoxelCount> voxels;
-  void voxel(int, const VoxelIndex& index, const PhaseVoxel<ColorSums>& sums) {
+  void voxel(int, const VoxelIndex& index, const PhaseVoxel<WideColorSums>& sums) {
     voxels.push_back({index, sums.reference.n(), sums.estimate.n()});
   }
-  void halves(const ColorSums&, const ColorSums&) {}
+  void halves(const WideColorSums&, const WideColorSums&) {}
 };
 
 /// Whether voxels of enough points of both hold half of the points of both.
@@ -54,9 +54,9 @@ std::vector<VoxelCount> doubled(std::vector<VoxelCount> voxels) {
 std::optional<double> voxel_of_half(const MapPair& pair, double voxel_m, std::uint64_t min_points) {
   constexpr int kMostDoublings = 8;
   const PhasedFrame frame(united(pair.reference.index.bounds(), pair.estimate.index.bounds()), voxel_m, 1);
-  const ColorSource source(maps_of(pair), false);
+  const WideColorSource source(maps_of(pair), false);
   std::vector<VoxelCount> voxels;
-  for (const CountUse& use : PhaseFold<ColorSource, CountUse>(maps_of(pair), frame, source).run({})) {
+  for (const CountUse& use : PhaseFold<WideColorSource, CountUse>(maps_of(pair), frame, source).run({})) {
     std::ranges::copy(use.voxels, std::back_inserter(voxels));
   }
   for (int doublings = 0; doublings < kMostDoublings; ++doublings) {

@@ -25,6 +25,7 @@ struct IndexedMap {
       : index(sort_points(cloud)),
         colors(cloud.has_color() ? sort_colors(cloud, index.points) : Array<ColorBlock>{}),
         n_without_color(count_without_color(cloud.colors)),
+        has_8_bit_colors(std::holds_alternative<Array<Rgb8>>(cloud.colors)),
         largest_step_m(float_step(largest_offset(index))),
         file_step_m(cloud.file_step_m) {}
 
@@ -36,8 +37,9 @@ struct IndexedMap {
   Bvh index;
   Array<ColorBlock> colors;
   std::uint64_t n_without_color;  ///< points whose color is NaN
-  double largest_step_m;          ///< float's step at the largest coordinate of any offset
-  double file_step_m;             ///< the cloud's
+  bool has_8_bit_colors;
+  double largest_step_m;  ///< float's step at the largest coordinate of any offset
+  double file_step_m;     ///< the cloud's
 };
 
 /// The map in its own order; colors as 8 bit.

@@ -1,0 +1,18 @@
+// The kernels, compiled once for each instruction set: loops over lanes that the compiler turns into vectors, with
+// operations that round alike in all of them. CMAP_LANES names the namespace.
+//
+// No inline function of another header may be emitted here and then be shared with the rest of the program: it would
+// carry this file's instructions onto processors without them.
+
+#include "simd/kernels.hpp"
+
+// clang-format off
+#include "simd/color_distances.inl"
+// clang-format on
+
+namespace cmap::CMAP_LANES {
+
+extern const MetricKernels kMetricKernels;
+const MetricKernels kMetricKernels{&color_distances};
+
+}  // namespace cmap::CMAP_LANES

@@ -1,0 +1,2 @@
+#define CMAP_LANES avx2
+#include "simd/kernels.inl"

@@ -1,0 +1,2 @@
+#define CMAP_LANES avx512
+#include "simd/kernels.inl"

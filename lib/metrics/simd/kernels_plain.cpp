@@ -1,0 +1,2 @@
+#define CMAP_LANES plain
+#include "simd/kernels.inl"
