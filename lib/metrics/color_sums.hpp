@@ -99,7 +99,7 @@ struct ColorSource {
   }
 
   bool counts(const IndexedMap& map, std::size_t slot) const { return map.has_color_at(slot); }
-  void add(Moments& moments, const IndexedMap& map, std::size_t slot, const Eigen::Vector3d&, const VoxelKey&) const {
+  void add(Moments& moments, const IndexedMap& map, std::size_t slot, const VoxelKey&) const {
     const Eigen::Vector3f color = color_at(map.colors, slot);
     moments.add({whole(color.x()), whole(color.y()), whole(color.z())});
   }

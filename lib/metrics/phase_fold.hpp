@@ -15,6 +15,7 @@
 #include "cmap/core/random_hash.hpp"
 #include "cmap/metrics/map_pair.hpp"
 #include "cmap/metrics/metric_inputs.hpp"
+#include "grid_places.hpp"
 #include "phased_frame.hpp"
 #include "voxels.hpp"
 
@@ -57,7 +58,7 @@ inline BothSides<const IndexedMap*> maps_of(const MapPair& pair) { return {&pair
 /// `Source` has
 ///   Moments                                                a voxel's sums: +=, and n(),
 ///   bool counts(map, slot)                                 whether a point is summed,
-///   void add(Moments&, map, slot, world, VoxelKey)         adds it,
+///   void add(Moments&, map, slot, VoxelKey)                adds it,
 ///   bool kHasCorners                                       whether sums are about the corners of voxels,
 ///   void merge(Moments&, const Moments& part)              adds those of a part; with corners, of a part that a phase
 ///                                                          shifts, on each axis, into so many voxels after its own:
@@ -177,17 +178,11 @@ class PhaseFold {
     if (cell.runs.of(side).empty()) return;
     const IndexedMap& map = *maps_.of(side);
     const PointBlocks& points = map.index.points;
-    const std::int32_t m = frame_.parts_per_axis();
-    constexpr std::int32_t kLocal = kVoxels - 1;
+    const PartGrid grid = part_grid(points, frame_.voxels(), frame_.parts_per_axis(), kVoxels);
     for (const CellRun& run : cell.runs.of(side)) {
-      for (std::size_t slot = run.begin; slot < run.end; ++slot) {
-        if (!source_.counts(map, slot)) continue;
-        const Eigen::Vector3d world = points.world(slot);
-        const auto [voxel, part] = frame_.place(world);
-        const LocalKey at{(voxel.x & kLocal) * m + part[0], (voxel.y & kLocal) * m + part[1],
-                          (voxel.z & kLocal) * m + part[2]};
-        source_.add(table_of(slot)[at], map, slot, world, voxel);
-      }
+      for_places(points, grid, run.begin, run.end, [&](std::size_t slot, const VoxelKey& voxel, std::int32_t place) {
+        if (source_.counts(map, slot)) source_.add(table_of(slot).at_place(place), map, slot, voxel);
+      });
     }
   }
 

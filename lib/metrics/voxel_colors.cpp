@@ -13,7 +13,7 @@ namespace {
 
 /// Adds a point's color, if it has one, to its voxel.
 auto color_adder(const IndexedMap& map) {
-  return [&map](ColorMoments& colors, std::size_t slot, const Eigen::Vector3d&, const VoxelKey&) {
+  return [&map](ColorMoments& colors, std::size_t slot) {
     if (map.has_color_at(slot)) colors.add(color_at(map.colors, slot), map.index.points.offset(slot));
   };
 }

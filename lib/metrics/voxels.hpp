@@ -11,6 +11,7 @@
 #include "cmap/core/parallel.hpp"
 #include "cmap/geometry/voxel_map.hpp"
 #include "cmap/spatial/bvh.hpp"
+#include "grid_places.hpp"
 
 namespace cmap {
 
@@ -73,6 +74,13 @@ class LocalGrid {
       entry = add_entry(key);
     return entries_[entry].sums;
   }
+  /// By a place's number, x slowest.
+  Sums& at_place(std::int32_t place) {
+    std::uint32_t& entry = entry_at_[static_cast<std::size_t>(place)];
+    if (entry == kFree) [[unlikely]]
+      entry = add_entry({place / (edge_ * edge_), place / edge_ % edge_, place % edge_});
+    return entries_[entry].sums;
+  }
   std::span<const Entry> entries() const { return entries_; }
   /// Makes room for the next cell.
   void clear() {
@@ -96,7 +104,7 @@ class LocalGrid {
   std::vector<Entry> entries_;
 };
 
-/// Sums the points of every voxel with add(sums, slot, world, key) and hands the sums to use(result, key, sums); there
+/// Sums the points of every voxel with add(sums, slot) and hands the sums to use(result, key, sums); there
 /// is a Result for each task, and they are ordered by cell. Cells are independent and sum in the order of slots, so
 /// that the results are the same for any number of threads.
 template <class Result, class Sums, class AddPoint, class UseVoxel>
@@ -104,6 +112,7 @@ std::vector<Result> fold_voxels(const Bvh& cloud, const VoxelFrame& frame, AddPo
   constexpr std::int32_t kEdge = 1 << kCellBits;
   const std::vector<CellRun> runs = cell_runs(cloud, frame);
   const std::vector<std::span<const CellRun>> tasks = cell_tasks(runs);
+  const PartGrid grid = part_grid(cloud.points, frame, 1, kEdge);
   std::vector<Result> results(tasks.size());
   parallel_chunks(tasks.size(), 1, [&](std::size_t i, std::size_t) {
     LocalGrid<Sums> voxels(kEdge);
@@ -117,11 +126,8 @@ std::vector<Result> fold_voxels(const Bvh& cloud, const VoxelFrame& frame, AddPo
     for (const CellRun& run : tasks[i]) {
       if (run.cell != cell) use_cell();
       cell = run.cell;
-      for (std::size_t slot = run.begin; slot < run.end; ++slot) {
-        const Eigen::Vector3d world = cloud.points.world(slot);
-        const VoxelKey key = frame.key(world);
-        add(voxels[{key.x & (kEdge - 1), key.y & (kEdge - 1), key.z & (kEdge - 1)}], slot, world, key);
-      }
+      for_places(cloud.points, grid, run.begin, run.end,
+                 [&](std::size_t slot, const VoxelKey&, std::int32_t place) { add(voxels.at_place(place), slot); });
     }
     use_cell();
   });

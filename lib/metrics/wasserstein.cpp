@@ -16,11 +16,11 @@ struct PlaceSource {
   using Moments = VoxelMoments;
 
   PlaceSource(const PhasedFrame& frame, bool with_halves)
-      : halves(with_halves), steps_of(frame.voxels(), frame.voxel_m()) {
+      : halves(with_halves), steps_of(frame.voxels(), frame.voxels().size_m()) {
     // A phase's voxel begins with part m - k of the voxel before its own, or a little earlier, as offsets are rounded.
     constexpr double kMargin = 64.0;
     const int m = frame.parts_per_axis();
-    const double voxel = frame.voxel_m() / steps_of.step_m();
+    const double voxel = frame.voxels().size_m() / steps_of.step_m();
     for (int k = 1; k < m; ++k) {
       const double begin = std::floor(voxel * (m - k) / m - kMargin);
       corner_steps[static_cast<std::size_t>(k)] = {static_cast<std::int64_t>(std::round(voxel) - begin),
@@ -29,9 +29,8 @@ struct PlaceSource {
   }
 
   bool counts(const IndexedMap&, std::size_t) const { return true; }
-  void add(Moments& moments, const IndexedMap&, std::size_t, const Eigen::Vector3d& world,
-           const VoxelKey& voxel) const {
-    moments.add(steps_of.offset(world, voxel));
+  void add(Moments& moments, const IndexedMap& map, std::size_t slot, const VoxelKey& voxel) const {
+    moments.add(steps_of.offset(map.index.points.world(slot), voxel));
   }
   static constexpr bool kHasCorners = true;
   void merge(Moments& into, const Moments& part, const LocalKey& shift, const LocalKey& after) const {

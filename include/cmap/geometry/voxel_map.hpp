@@ -23,6 +23,8 @@ class VoxelFrame {
   /// Throws UsageError where the box holds more than 2^31 voxels along an axis, std::invalid_argument if size <= 0.
   VoxelFrame(const Box3d& box, double size_m);
 
+  double size_m() const { return size_m_; }
+
   VoxelKey key(const Eigen::Vector3d& world) const {
     return {axis_key(world.x(), base_[0]), axis_key(world.y(), base_[1]), axis_key(world.z(), base_[2])};
   }

@@ -19,8 +19,8 @@ struct Symmetric {
   }
   double trace() const { return xx + yy + zz; }
   [[gnu::always_inline]] Symmetric cofactors() const {
-    return {yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy, xx * zz - xz * xz, xz * xy - xx * yz,
-            xx * yy - xy * xy};
+    return {yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy,
+            xx * zz - xz * xz, xz * xy - xx * yz, xx * yy - xy * xy};
   }
   /// Of a covariance, by its Schur complement about the largest variance: what is small keeps its digits.
   [[gnu::always_inline]] double determinant() const {
@@ -34,7 +34,8 @@ struct Symmetric {
 };
 
 /// Of whole numbers, whose products are exact: one rounding is all there is.
-[[gnu::always_inline]] inline Symmetric covariance(const std::uint32_t (&words)[ColorPairLanes::kWords][kLanes], std::size_t i) {
+[[gnu::always_inline]] inline Symmetric covariance(const std::uint32_t (&words)[ColorPairLanes::kWords][kLanes],
+                                                   std::size_t i) {
   const double n = words[0][i], r = words[1][i], g = words[2][i], b = words[3][i];
   const double by = 1.0 / (n * (n - 1.0));
   return {(n * words[4][i] - r * r) * by, (n * words[5][i] - r * g) * by, (n * words[6][i] - r * b) * by,

@@ -4,8 +4,22 @@
 #include <cstdint>
 
 #include "cmap/core/simd.hpp"
+#include "cmap/spatial/point_blocks.hpp"
 
 namespace cmap {
+
+/// A grid of voxels anchored at the world's origin, its voxels cut into parts, and cells of voxels.
+struct PartGrid {
+  double origin[3];  ///< of the points' offsets
+  double voxel_m;
+  double first[3];  ///< the index of the voxel of key 0, a whole number
+  std::int32_t parts_per_axis, voxels_per_cell;
+};
+
+/// Of each point of a block the voxel's key, and the part's number in its cell, x slowest.
+struct GridPlaces {
+  alignas(64) std::int32_t x[kBlockSize], y[kBlockSize], z[kBlockSize], in_cell[kBlockSize];
+};
 
 /// The 8-bit colors of both maps in some voxels, side by side. A word is below 2^32 and a voxel of at most 2^16 points.
 struct ColorPairLanes {
@@ -16,6 +30,7 @@ struct ColorPairLanes {
 
 /// One set of kernels for each instruction set, all with bitwise equal results, which no lane's neighbors change.
 struct MetricKernels {
+  void (*grid_places)(const PartGrid& grid, const PointBlock& points, GridPlaces& places);
   /// The 2-Wasserstein distances of the Gaussians of such voxels, of at least two points each, in levels of 8 bit.
   void (*color_distances)(const ColorPairLanes& pairs, double* distances);
 };

@@ -8,11 +8,12 @@
 
 // clang-format off
 #include "simd/color_distances.inl"
+#include "simd/grid_places.inl"
 // clang-format on
 
 namespace cmap::CMAP_LANES {
 
 extern const MetricKernels kMetricKernels;
-const MetricKernels kMetricKernels{&color_distances};
+const MetricKernels kMetricKernels{&grid_places, &color_distances};
 
 }  // namespace cmap::CMAP_LANES

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <algorithm>
+
+#include "cmap/geometry/voxel_map.hpp"
+#include "cmap/spatial/point_blocks.hpp"
+#include "simd/kernels.hpp"
+
+namespace cmap {
+
+/// For the points of one cloud in a frame of voxels that has parts and cells.
+inline PartGrid part_grid(const PointBlocks& points, const VoxelFrame& frame, int parts_per_axis, int voxels_per_cell) {
+  const std::array<std::int64_t, 3> first = frame.index(VoxelKey{});
+  PartGrid grid{.origin = {},
+                .voxel_m = frame.size_m(),
+                .first = {},
+                .parts_per_axis = parts_per_axis,
+                .voxels_per_cell = voxels_per_cell};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    grid.origin[axis] = points.origin[static_cast<Eigen::Index>(axis)];
+    grid.first[axis] = static_cast<double>(first[axis]);
+  }
+  return grid;
+}
+
+/// Hands every slot of [begin, end) to use(slot, voxel, place), the place being its part's number in its cell.
+template <class Use>
+void for_places(const PointBlocks& points, const PartGrid& grid, std::size_t begin, std::size_t end, Use use) {
+  GridPlaces places;
+  for (std::size_t slot = begin; slot < end;) {
+    const std::size_t block = slot / kBlockSize, block_end = std::min(end, (block + 1) * kBlockSize);
+    metric_kernels().grid_places(grid, points.blocks[block], places);
+    for (; slot < block_end; ++slot) {
+      const std::size_t lane = slot % kBlockSize;
+      use(slot, VoxelKey{places.x[lane], places.y[lane], places.z[lane]}, places.in_cell[lane]);
+    }
+  }
+}
+
+}  // namespace cmap
