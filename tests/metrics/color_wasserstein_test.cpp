@@ -52,6 +52,36 @@ TEST(ColorWasserstein, OfAConstantShiftIsTheShiftInEveryPhase) {
   EXPECT_EQ(number(found, "phases.n"), 8);
 }
 
+/// The same colors as floats, whose sums have words of another size and steps of another kind.
+PointCloud with_float_colors(PointCloud cloud) {
+  Array<RgbF> floats;
+  for (const Rgb8& color : std::get<Array<Rgb8>>(cloud.colors)) {
+    floats.push_back({static_cast<float>(color[0]) / 255.0f, static_cast<float>(color[1]) / 255.0f,
+                      static_cast<float>(color[2]) / 255.0f});
+  }
+  cloud.colors = std::move(floats);
+  return cloud;
+}
+
+TEST(ColorWasserstein, IsThatOfTheSameColorsAsFloats) {
+  const PointCloud sheet = test::two_sheets(20000, 1).reference;
+  const test::Clouds sheets{sheet, shifted_colors(sheet, 30)};
+  const test::Clouds floats{with_float_colors(sheets.reference), with_float_colors(sheets.estimate)};
+  const Record found = test::measured(catalog::color_wasserstein, sheets, voxels_of(2.0, 10));
+  const Record expected = test::measured(catalog::color_wasserstein, floats, voxels_of(2.0, 10));
+  EXPECT_NEAR(*found.value, *expected.value, 1e-6);  // what float's rounding of n / 255 moves a color
+  EXPECT_NEAR(number(found, "phases.std"), number(expected, "phases.std"), 1e-6);
+}
+
+TEST(ColorWasserstein, OfMorePointsAVoxelThanNarrowWordsSum) {
+  constexpr std::size_t kPoints = 70'000;  // of 255^2 each: above 2^32
+  const std::vector<Eigen::Vector3f> places(kPoints, {0.1f, 0.1f, 0.1f});
+  const test::Clouds clouds{test::cloud_of(places, std::vector<Rgb8>(kPoints, {255, 255, 255})),
+                            test::cloud_of(places, std::vector<Rgb8>(kPoints, {204, 204, 204}))};
+  const Record found = test::measured(catalog::color_wasserstein, clouds, voxels_of(1.0, 10));
+  EXPECT_NEAR(*found.value, 0.2 * std::sqrt(3.0), 1e-14);  // some roundings of 1
+}
+
 TEST(ColorWasserstein, OfAMapAndItselfIsZero) {
   const PointCloud cloud = test::two_sheets().reference;
   EXPECT_EQ(*test::measured(catalog::color_wasserstein, {cloud, cloud}, voxels_of(4.0, 10)).value, 0.0);

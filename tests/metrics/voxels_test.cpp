@@ -69,7 +69,7 @@ struct CountedVoxel {
 
 auto count_points(const Bvh& cloud, const VoxelFrame& frame, std::uint64_t min_points) {
   return collect_voxels<std::uint64_t>(
-      cloud, frame, [](std::uint64_t& n, std::size_t, const Eigen::Vector3d&, const VoxelKey&) { ++n; },
+      cloud, frame, [](std::uint64_t& n, std::size_t) { ++n; },
       [&](const VoxelKey& key, std::uint64_t n) -> std::optional<CountedVoxel> {
         if (n < min_points) return std::nullopt;
         return CountedVoxel{key, n};

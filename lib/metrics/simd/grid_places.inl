@@ -12,17 +12,15 @@ struct AxisPlaces {
 void axis_places(const PartGrid& grid, std::size_t axis, const float* offsets, AxisPlaces& places) {
   const double origin = grid.origin[axis], voxel_m = grid.voxel_m, first = grid.first[axis];
   const std::int32_t local = grid.voxels_per_cell - 1, m = grid.parts_per_axis;
-  double index[kBlockSize];
+  double at[kBlockSize], index[kBlockSize];
   for (std::size_t i = 0; i < kBlockSize; ++i) {
-    index[i] = __builtin_floor((origin + static_cast<double>(offsets[i])) / voxel_m);
+    at[i] = (origin + static_cast<double>(offsets[i])) / voxel_m;
+    index[i] = __builtin_floor(at[i]);
     places.key[i] = static_cast<std::int32_t>(index[i] - first);
     places.part[i] = (places.key[i] & local) * m;
   }
   if (m == 2) {
-    for (std::size_t i = 0; i < kBlockSize; ++i) {
-      const double at = (origin + static_cast<double>(offsets[i])) / voxel_m;
-      places.part[i] += at >= index[i] + 0.5 ? 1 : 0;
-    }
+    for (std::size_t i = 0; i < kBlockSize; ++i) places.part[i] += at[i] >= index[i] + 0.5 ? 1 : 0;
   } else if (m == 3) {
     for (std::size_t i = 0; i < kBlockSize; ++i) {
       const double in_parts = 3.0 * (origin + static_cast<double>(offsets[i])) / voxel_m, begin = 3.0 * index[i];

@@ -1,0 +1,131 @@
+// Every instruction set must give the bits of the plain kernels, and these what their formulas say.
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <random>
+
+#include "cmap/core/error.hpp"
+#include "color_sums.hpp"
+#include "grid_places.hpp"
+#include "phased_frame.hpp"
+
+namespace cmap {
+namespace metric_kernels_test {
+
+class MetricKernels : public testing::TestWithParam<SimdLevel> {
+ protected:
+  void SetUp() override {
+    try {
+      parse_simd_level(simd_level_name(GetParam()));
+    } catch (const UsageError& error) {
+      GTEST_SKIP() << error.what();
+    }
+  }
+  const cmap::MetricKernels& level() const { return metric_kernels_for(GetParam()); }
+};
+
+/// A block of points far from the world's origin, some on faces of voxels and halves of them.
+PointBlock points_on_and_off_faces() {
+  PointBlock block;
+  for (std::size_t i = 0; i < kBlockSize; ++i) {
+    block.x[i] = -3.0f + 0.25f * static_cast<float>(i);
+    block.y[i] = -2.0f + 0.37f * static_cast<float>(i);
+    block.z[i] = 5.0f - 0.5f * static_cast<float>(i);
+  }
+  return block;
+}
+
+/// floor(m x / voxel) - m floor(x / voxel).
+std::int32_t part_of(double x, double voxel_m, int m) {
+  return static_cast<std::int32_t>(std::floor(m * x / voxel_m) - m * std::floor(x / voxel_m));
+}
+
+TEST_P(MetricKernels, PlacesAreThoseOfTheFrame) {
+  PointBlocks points;
+  points.origin = {448'000.25, -5'411'000.5, 0.0};
+  points.blocks.push_back(points_on_and_off_faces());
+  points.size = kBlockSize;
+  const Box3d box{points.origin - Eigen::Vector3d(20, 20, 20), points.origin + Eigen::Vector3d(20, 20, 20)};
+  for (const int m : {1, 2, 3}) {
+    const VoxelFrame frame(box, 0.5);
+    GridPlaces places;
+    level().grid_places(part_grid(points, frame, m, 4), points.blocks[0], places);
+    for (std::size_t i = 0; i < kBlockSize; ++i) {
+      const Eigen::Vector3d world = points.world(i);
+      const VoxelKey key = frame.key(world);
+      ASSERT_EQ((VoxelKey{places.x[i], places.y[i], places.z[i]}), key);
+      const std::int32_t x = key.x % 4 * m + part_of(world.x(), 0.5, m), y = key.y % 4 * m + part_of(world.y(), 0.5, m),
+                         z = key.z % 4 * m + part_of(world.z(), 0.5, m);
+      ASSERT_EQ(places.in_cell[i], (x * 4 * m + y) * 4 * m + z);
+    }
+  }
+}
+
+/// Colors about a center, spread on some channels only, so that covariances of rank 0 to 3 occur.
+NarrowColorSums random_colors(std::mt19937& random, int rank, int n) {
+  NarrowColorSums sums;
+  std::uniform_int_distribution<std::uint32_t> center(40, 200), spread(0, 30);
+  const std::array<std::uint32_t, 3> at{center(random), center(random), center(random)};
+  for (int i = 0; i < n; ++i) {
+    std::array<std::uint32_t, 3> color = at;
+    for (int channel = 0; channel < rank; ++channel) color[static_cast<std::size_t>(channel)] += spread(random);
+    sums.add(color);
+  }
+  return sums;
+}
+
+struct RandomPairs {
+  ColorPairLanes lanes{};
+  std::array<double, ColorPairLanes::kLanes> expected{};
+};
+
+/// Expected is what the general formula makes of the same sums.
+RandomPairs random_pairs(std::mt19937& random) {
+  RandomPairs pairs;
+  for (std::size_t i = 0; i < ColorPairLanes::kLanes; ++i) {
+    const int rank = static_cast<int>(i % 4);
+    const NarrowColorSums a = random_colors(random, rank, 2 + 40 * static_cast<int>(i));
+    const NarrowColorSums b = random_colors(random, (rank + static_cast<int>(i / 8)) % 4, 100);
+    for (std::size_t word = 0; word < ColorPairLanes::kWords; ++word) {
+      pairs.lanes.reference[word][i] = a.words()[word];
+      pairs.lanes.estimate[word][i] = b.words()[word];
+    }
+    pairs.expected[i] = wasserstein_distance(WideColorSums(a).gaussian(1.0), WideColorSums(b).gaussian(1.0));
+  }
+  return pairs;
+}
+
+TEST_P(MetricKernels, ColorDistancesAreThoseOfGaussians) {
+  std::mt19937 random(1);
+  for (int repeat = 0; repeat < 50; ++repeat) {
+    const RandomPairs pairs = random_pairs(random);
+    std::array<double, ColorPairLanes::kLanes> found{}, plain{};
+    level().color_distances(pairs.lanes, found.data());
+    metric_kernels_for(SimdLevel::kPlain).color_distances(pairs.lanes, plain.data());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      ASSERT_EQ(std::bit_cast<std::uint64_t>(found[i]), std::bit_cast<std::uint64_t>(plain[i]));
+      // Both round sums of up to 1e4 levels squared, of which the distance is the root of a small rest.
+      ASSERT_NEAR(found[i] * found[i], pairs.expected[i] * pairs.expected[i], 1e-10);
+    }
+  }
+}
+
+TEST_P(MetricKernels, NoLaneChangesItsNeighbors) {
+  std::mt19937 random(2);
+  RandomPairs pairs = random_pairs(random);
+  std::array<double, ColorPairLanes::kLanes> together{}, alone{};
+  level().color_distances(pairs.lanes, together.data());
+  for (std::size_t word = 0; word < ColorPairLanes::kWords; ++word) {
+    for (std::size_t i = 1; i < ColorPairLanes::kLanes; ++i) pairs.lanes.reference[word][i] = 0;
+  }
+  level().color_distances(pairs.lanes, alone.data());
+  EXPECT_EQ(together[0], alone[0]);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, MetricKernels,
+                         testing::Values(SimdLevel::kPlain, SimdLevel::kSse2, SimdLevel::kAvx2, SimdLevel::kAvx512),
+                         [](const auto& level) { return std::string(simd_level_name(level.param)); });
+
+}  // namespace metric_kernels_test
+}  // namespace cmap
