@@ -95,11 +95,9 @@ void ExactSum::settle() {
 
 /// At most as many terms as still fit the windows.
 void ExactSum::add_piece(std::span<const double> terms) {
-  std::uint64_t n_wide = 0;
-  for (const double term : terms) n_wide += std::abs(term) < kWindowLimit ? 0 : 1;
   constexpr std::size_t kLanes = 4;
-  const std::size_t in_lanes = n_wide == 0 ? terms.size() / kLanes * kLanes : 0;
-  double high[kLanes]{}, middle[kLanes]{}, low[kLanes]{};
+  std::size_t in_lanes = terms.size() / kLanes * kLanes;
+  double high[kLanes]{}, middle[kLanes]{}, low[kLanes]{}, wide[kLanes]{};
   for (std::size_t i = 0; i < in_lanes; i += kLanes) {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const double term = terms[i + lane];
@@ -109,7 +107,14 @@ void ExactSum::add_piece(std::span<const double> terms) {
       high[lane] += whole;
       middle[lane] += part;
       low[lane] += ((rest - part) + kLow) - kLow;
+      wide[lane] = std::abs(term) < kWindowLimit ? wide[lane] : 1.0;
     }
+  }
+  if (wide[0] + wide[1] + wide[2] + wide[3] > 0.0) {  // sums that are of no use
+    in_lanes = 0;
+    std::ranges::fill(high, 0.0);
+    std::ranges::fill(middle, 0.0);
+    std::ranges::fill(low, 0.0);
   }
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     high_ += high[lane];
