@@ -16,22 +16,9 @@ struct Extent {
   float min, max;
 };
 
-/// Four at a time, so that it vectorizes.
 Extent extent_of(const float (&lows)[kBlockSize], const float (&highs)[kBlockSize]) {
-  constexpr std::size_t kLanes = 4;
-  float low[kLanes], high[kLanes];
-  for (std::size_t j = 0; j < kLanes; ++j) {
-    low[j] = lows[j];
-    high[j] = highs[j];
-  }
-  for (std::size_t i = kLanes; i < kBlockSize; i += kLanes) {
-    for (std::size_t j = 0; j < kLanes; ++j) {
-      low[j] = lows[i + j] < low[j] ? lows[i + j] : low[j];
-      high[j] = highs[i + j] > high[j] ? highs[i + j] : high[j];
-    }
-  }
-  return {std::min(std::min(low[0], low[1]), std::min(low[2], low[3])),
-          std::max(std::max(high[0], high[1]), std::max(high[2], high[3]))};
+  using Values = Eigen::Map<const Eigen::Array<float, kBlockSize, 1>>;
+  return {Values(lows).minCoeff(), Values(highs).maxCoeff()};
 }
 
 void set_child(BoxNode& node, std::size_t c, Extent x, Extent y, Extent z) {
