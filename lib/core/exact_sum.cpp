@@ -1,5 +1,6 @@
 #include "cmap/core/exact_sum.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <bit>
 #include <stdexcept>
@@ -95,26 +96,27 @@ void ExactSum::settle() {
 
 /// At most as many terms as still fit the windows.
 void ExactSum::add_piece(std::span<const double> terms) {
-  std::uint64_t n_wide = 0;
-  for (const double term : terms) n_wide += std::abs(term) < kWindowLimit ? 0 : 1;
+  using Lanes = Eigen::Array<double, 4, 1>;
   constexpr std::size_t kLanes = 4;
-  const std::size_t in_lanes = n_wide == 0 ? terms.size() / kLanes * kLanes : 0;
-  double high[kLanes]{}, middle[kLanes]{}, low[kLanes]{};
+  std::size_t in_lanes = terms.size() / kLanes * kLanes;
+  Lanes high = Lanes::Zero(), middle = Lanes::Zero(), low = Lanes::Zero(), largest = Lanes::Zero();
   for (std::size_t i = 0; i < in_lanes; i += kLanes) {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const double term = terms[i + lane];
-      const double whole = (term + kHigh) - kHigh;
-      const double rest = term - whole;
-      const double part = (rest + kMiddle) - kMiddle;
-      high[lane] += whole;
-      middle[lane] += part;
-      low[lane] += ((rest - part) + kLow) - kLow;
-    }
+    const Lanes term = Eigen::Map<const Lanes>(terms.data() + i);
+    const Lanes whole = (term + kHigh) - kHigh;
+    const Lanes rest = term - whole;
+    const Lanes part = (rest + kMiddle) - kMiddle;
+    high += whole;
+    middle += part;
+    low += ((rest - part) + kLow) - kLow;
+    largest = largest.max(term.abs());
   }
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    high_ += high[lane];
-    middle_ += middle[lane];
-    low_ += low[lane];
+  // NaN may pass the largest by, but not the sums.
+  if (largest.maxCoeff() < kWindowLimit && high.allFinite()) {
+    high_ += high.sum();
+    middle_ += middle.sum();
+    low_ += low.sum();
+  } else {
+    in_lanes = 0;
   }
   n_pending_ += static_cast<std::uint32_t>(in_lanes);
   if (n_pending_ == kMostPending) settle();

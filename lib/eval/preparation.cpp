@@ -9,6 +9,7 @@
 #include "cmap/core/parallel.hpp"
 #include "cmap/eval/map_error.hpp"
 #include "cmap/eval/metric_catalog.hpp"
+#include "cmap/geometry/point_extent.hpp"
 #include "cmap/geometry/voxel_map.hpp"
 #include "plausibility.hpp"
 
@@ -19,9 +20,7 @@ void require_finite_points(const PointCloud& cloud, const char* which) {
   if (cloud.positions.empty()) throw InputError(fmt::format("the {} has no points", which));
   std::atomic<bool> finite = true;
   parallel_chunks(cloud.size(), kLoopChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      if (!cloud.positions[i].allFinite()) finite = false;
-    }
+    if (!point_extent(cloud.positions[begin].data(), end - begin).finite) finite = false;
   });
   if (!finite) throw InputError(fmt::format("the {} has a point that is not finite", which));
 }

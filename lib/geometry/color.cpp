@@ -46,16 +46,9 @@ double mean_hue(double hue1, double hue2) {
 }  // namespace
 
 RgbF rgb_255(const Colors& colors, std::size_t i) {
-  if (const auto* c = std::get_if<Array<Rgb8>>(&colors)) {
-    return {static_cast<float>((*c)[i][0]), static_cast<float>((*c)[i][1]), static_cast<float>((*c)[i][2])};
-  }
-  if (const auto* c = std::get_if<Array<Rgb16>>(&colors)) {
-    const auto scaled = [](std::uint16_t v) { return static_cast<float>(v) / 257.0f; };
-    return {scaled((*c)[i][0]), scaled((*c)[i][1]), scaled((*c)[i][2])};
-  }
-  if (const auto* c = std::get_if<Array<RgbF>>(&colors)) {
-    return {(*c)[i][0] * 255.0f, (*c)[i][1] * 255.0f, (*c)[i][2] * 255.0f};
-  }
+  if (const auto* c = std::get_if<Array<Rgb8>>(&colors)) return rgb_255((*c)[i]);
+  if (const auto* c = std::get_if<Array<Rgb16>>(&colors)) return rgb_255((*c)[i]);
+  if (const auto* c = std::get_if<Array<RgbF>>(&colors)) return rgb_255((*c)[i]);
   throw std::invalid_argument("rgb_255: the cloud has no colors");
 }
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "cmap/geometry/core_box.hpp"
+#include "cmap/geometry/point_extent.hpp"
 
 namespace cmap {
 namespace {
@@ -28,13 +29,9 @@ std::string_view color_type_name(const Colors& colors) {
 
 Box3d bounds(const PointCloud& cloud) {
   if (cloud.positions.empty()) throw std::invalid_argument("bounds of an empty point cloud");
-  Eigen::Vector3f lowest = cloud.positions.front();
-  Eigen::Vector3f highest = lowest;
-  for (const Eigen::Vector3f& p : cloud.positions) {
-    lowest = lowest.cwiseMin(p);
-    highest = highest.cwiseMax(p);
-  }
-  return {cloud.origin + lowest.cast<double>(), cloud.origin + highest.cast<double>()};
+  const PointExtent<float> extent = point_extent(cloud.positions.front().data(), cloud.size());
+  const Eigen::Vector3f low(extent.min.data()), high(extent.max.data());
+  return {cloud.origin + low.cast<double>(), cloud.origin + high.cast<double>()};
 }
 
 Eigen::Vector3d choose_origin(const Box3d& box) {

@@ -27,7 +27,6 @@ std::vector<Column> columns_of(std::span<const VoxelDistance> voxels) {
 /// A voxel of a neighborhood.
 struct Neighbor {
   std::int64_t z;
-  std::size_t voxel;
   double distance_m;
 };
 
@@ -63,7 +62,7 @@ class Neighborhoods {
  private:
   void add(const Column& column, std::vector<Neighbor>& around) const {
     for (std::size_t i = column.begin; i < column.end; ++i) {
-      around.push_back({voxels_[i].index[2], i, voxels_[i].distance_m});
+      around.push_back({voxels_[i].index[2], voxels_[i].distance_m});
     }
   }
 
@@ -74,16 +73,22 @@ class Neighborhoods {
 };
 
 /// Coefficient of variation of the distances around a voxel; NaN where the voxel is to be skipped.
-/// Differences to the voxel's own distance are summed: equal distances give a variance of exactly 0.
-double local_variation(const VoxelDistance& center, std::size_t voxel, std::span<const Neighbor> around, int radius) {
-  double n = 0.0, sum = 0.0, sum_sq = 0.0;
-  for (const Neighbor& other : around) {
-    if (std::abs(other.z - center.index[2]) > radius || other.voxel == voxel) continue;
-    const double difference = other.distance_m - center.distance_m;
-    n += 1.0;
+/// Differences to the voxel's own distance are summed: equal distances give a variance of exactly 0, and the voxel
+/// itself, which is among those around it, adds nothing.
+double local_variation(const VoxelDistance& center, std::span<const Neighbor> around, int radius,
+                       std::vector<double>& differences) {
+  differences.resize(around.size());
+  std::size_t n_near = 0;
+  for (const Neighbor& other : around) {  // without a branch: which of them are near cannot be foretold
+    differences[n_near] = other.distance_m - center.distance_m;
+    n_near += std::abs(other.z - center.index[2]) <= radius ? 1 : 0;
+  }
+  double sum = 0.0, sum_sq = 0.0;
+  for (const double difference : std::span(differences).first(n_near)) {
     sum += difference;
     sum_sq += difference * difference;
   }
+  const auto n = static_cast<double>(n_near - 1);
   const double mean = center.distance_m + sum / n;
   const double variance = std::max(0.0, sum_sq / n - (sum / n) * (sum / n));
   return n > 0.0 && mean > 0.0 ? std::sqrt(variance) / mean : std::nan("");
@@ -98,10 +103,11 @@ std::vector<double> local_variations(std::span<const VoxelDistance> voxels, int 
   std::vector<double> variations(voxels.size());
   parallel_chunks(columns.size(), kColumnChunk, [&](std::size_t begin, std::size_t end) {
     std::vector<Neighbor> around;
+    std::vector<double> differences;
     for (const Column& column : columns.subspan(begin, end - begin)) {
       neighborhoods.find(column, around);
       for (std::size_t i = column.begin; i < column.end; ++i) {
-        variations[i] = local_variation(voxels[i], i, around, radius_voxels);
+        variations[i] = local_variation(voxels[i], around, radius_voxels, differences);
       }
     }
   });

@@ -9,11 +9,12 @@ namespace {
 constexpr std::size_t kRunSlots = 4096;  // whose values stay in the first caches
 constexpr std::size_t kTaskSlots = 1 << 16;
 
-/// The band of a distance: thresholds mean what was typed (spatial/threshold.hpp).
+/// The band of a distance: thresholds mean what was typed (spatial/threshold.hpp). All are compared with, as which is the
+/// last below a distance cannot be foretold.
 std::uint32_t band_of(double distance_m, std::span<const double> upper_m, const NearestPairs& pairs, std::size_t slot,
                       double most_rounding_m) {
   std::size_t band = 0;
-  while (band < upper_m.size() && distance_m > upper_m[band]) ++band;
+  for (const double upper : upper_m) band += distance_m > upper ? 1 : 0;
   while (band > 0 && distance_m <= upper_m[band - 1] + most_rounding_m &&
          distance_m <= upper_m[band - 1] + pairs.rounding_m(slot)) {
     --band;

@@ -20,12 +20,12 @@ inline constexpr int kCellBits = 5;  ///< a cell has 32 voxels an axis: a surfac
 /// Consecutive slots of a sorted cloud within one cell of 2^bits voxels an axis.
 struct CellRun {
   VoxelKey cell;
-  std::size_t begin;
-  std::size_t end;
+  std::uint32_t begin;
+  std::uint32_t end;
 };
 
-/// The cloud as runs, ordered by cell and slot. Neighbors on the curve are neighbors in space, so runs are few; blocks
-/// of points whose box lies in one cell are not looked at.
+/// The cloud as runs, ordered by cell and slot. Neighbors on the curve are neighbors in space, so runs are few; what
+/// lies below a box within one cell is not looked at.
 std::vector<CellRun> cell_runs(const Bvh& cloud, const VoxelFrame& frame, int cell_bits = kCellBits);
 
 /// Points of the least work that is worth a task.

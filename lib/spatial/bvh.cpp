@@ -17,12 +17,8 @@ struct Extent {
 };
 
 Extent extent_of(const float (&lows)[kBlockSize], const float (&highs)[kBlockSize]) {
-  Extent e{lows[0], highs[0]};
-  for (std::size_t i = 1; i < kBlockSize; ++i) {
-    e.min = std::min(e.min, lows[i]);
-    e.max = std::max(e.max, highs[i]);
-  }
-  return e;
+  using Values = Eigen::Map<const Eigen::Array<float, kBlockSize, 1>>;
+  return {Values(lows).minCoeff(), Values(highs).maxCoeff()};
 }
 
 void set_child(BoxNode& node, std::size_t c, Extent x, Extent y, Extent z) {

@@ -9,6 +9,7 @@
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
 #include "cmap/geometry/color.hpp"
+#include "cmap/geometry/point_extent.hpp"
 #include "cmap/spatial/radix_sort.hpp"
 #include "simd/kernels.hpp"
 
@@ -19,13 +20,12 @@ constexpr std::uint64_t kIndexMask = (std::uint64_t{1} << kIndexBits) - 1;
 /// Points in one cell of the curve from which the cell gets a finer curve of its own.
 constexpr std::size_t kCrowded = 2048;
 
+/// So many slots early a point is asked for: neighbors on the curve are anywhere in the cloud.
+constexpr std::size_t kAhead = 64;
+
 struct Box3f {
   Eigen::Vector3f min = Eigen::Vector3f::Constant(INFINITY);
   Eigen::Vector3f max = Eigen::Vector3f::Constant(-INFINITY);
-  void extend(const Eigen::Vector3f& p) {
-    min = min.cwiseMin(p);
-    max = max.cwiseMax(p);
-  }
   Box3f& operator+=(const Box3f& other) {
     min = min.cwiseMin(other.min);
     max = max.cwiseMax(other.max);
@@ -35,9 +35,8 @@ struct Box3f {
 
 Box3f box_of(std::span<const Eigen::Vector3f> positions) {
   return ordered_sum<Box3f>(positions.size(), kLoopChunk, [&](std::size_t begin, std::size_t end) {
-    Box3f box;
-    for (std::size_t i = begin; i < end; ++i) box.extend(positions[i]);
-    return box;
+    const PointExtent<float> extent = point_extent(positions[begin].data(), end - begin);
+    return Box3f{Eigen::Vector3f(extent.min.data()), Eigen::Vector3f(extent.max.data())};
   });
 }
 
@@ -102,7 +101,6 @@ void refine_crowded_cells(std::span<const Eigen::Vector3f> positions, Array<std:
 }
 
 void fill_block(const PointCloud& cloud, const Array<std::uint64_t>& order, std::size_t block, PointBlocks& sorted) {
-  constexpr std::size_t kAhead = 64;  // the points are anywhere in the cloud: ask for them early
   for (std::size_t lane = 0; lane < kBlockSize; ++lane) {
     const std::size_t later = std::min(block * kBlockSize + lane + kAhead, order.size() - 1);
     __builtin_prefetch(&cloud.positions[order[later] & kIndexMask]);
@@ -113,6 +111,19 @@ void fill_block(const PointCloud& cloud, const Array<std::uint64_t>& order, std:
     sorted.blocks[block].y[lane] = p.y();
     sorted.blocks[block].z[lane] = p.z();
     sorted.original_index[block * kBlockSize + lane] = index;
+  }
+}
+
+template <class Color>
+void fill_colors(const Array<Color>& values, const PointBlocks& points, std::size_t block, ColorBlock& sorted) {
+  const std::size_t last = points.original_index.size() - 1;
+  for (std::size_t lane = 0; lane < kBlockSize; ++lane) {
+    const std::size_t slot = block * kBlockSize + lane;
+    __builtin_prefetch(&values[points.original_index[std::min(slot + kAhead, last)]]);
+    const RgbF color = rgb_255(values[points.original_index[slot]]);
+    sorted.r[lane] = color[0];
+    sorted.g[lane] = color[1];
+    sorted.b[lane] = color[2];
   }
 }
 
@@ -154,16 +165,14 @@ PointBlocks chosen_points(const PointBlocks& points, const Array<std::uint32_t>&
 
 Array<ColorBlock> sort_colors(const PointCloud& cloud, const PointBlocks& points) {
   Array<ColorBlock> colors(points.blocks.size());
-  parallel_chunks(colors.size(), kLoopChunk / kBlockSize, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t block = begin; block < end; ++block) {
-      for (std::size_t lane = 0; lane < kBlockSize; ++lane) {
-        const RgbF color = rgb_255(cloud.colors, points.original_index[block * kBlockSize + lane]);
-        colors[block].r[lane] = color[0];
-        colors[block].g[lane] = color[1];
-        colors[block].b[lane] = color[2];
-      }
+  const auto fill_all = [&]<class T>(const T& values) {
+    if constexpr (!std::is_same_v<T, std::monostate>) {
+      parallel_chunks(colors.size(), kLoopChunk / kBlockSize, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t block = begin; block < end; ++block) fill_colors(values, points, block, colors[block]);
+      });
     }
-  });
+  };
+  std::visit(fill_all, cloud.colors);
   return colors;
 }
 

@@ -212,7 +212,7 @@ TEST(PointsWithin, CountsLikeTheDefinition) {
         expected += (cloud.world(k) - cloud.world(i)).norm() <= radius_m ? 1 : 0;
       }
       EXPECT_EQ(within.count(cloud.positions[i]), expected);
-      EXPECT_TRUE(within.any(cloud.positions[i], [](std::size_t) { return true; }));
+      EXPECT_TRUE(within.any(cloud.positions[i], i, [](std::size_t) { return true; }));
     }
     EXPECT_EQ(within.count({1e4f, 0, 0}), 0U);
   }

@@ -7,8 +7,17 @@
 
 namespace cmap {
 
-/// Color of point i as RGB in units of 1/255, whatever the storage: 8-bit values stay exact integers, 16-bit ones are
-/// divided by 257, float ones multiplied by 255. The cloud must have colors.
+/// A color as RGB in units of 1/255, whatever the storage: 8-bit values stay exact integers, 16-bit ones are divided by
+/// 257, float ones multiplied by 255.
+inline RgbF rgb_255(const Rgb8& c) {
+  return {static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2])};
+}
+inline RgbF rgb_255(const Rgb16& c) {
+  return {static_cast<float>(c[0]) / 257.0f, static_cast<float>(c[1]) / 257.0f, static_cast<float>(c[2]) / 257.0f};
+}
+inline RgbF rgb_255(const RgbF& c) { return {c[0] * 255.0f, c[1] * 255.0f, c[2] * 255.0f}; }
+
+/// That of point i. The cloud must have colors.
 RgbF rgb_255(const Colors& colors, std::size_t i);
 
 /// A color in units of 1/255, rounded; beyond 0..255 the end.

@@ -26,7 +26,13 @@ class VoxelFrame {
   double size_m() const { return size_m_; }
 
   VoxelKey key(const Eigen::Vector3d& world) const {
-    return {axis_key(world.x(), base_[0]), axis_key(world.y(), base_[1]), axis_key(world.z(), base_[2])};
+    return {axis_key(0, world.x()), axis_key(1, world.y()), axis_key(2, world.z())};
+  }
+  /// A key's coordinate on one axis.
+  std::int32_t axis_key(int axis, double world) const {
+    const double index = world / size_m_;
+    const auto truncated = static_cast<std::int64_t>(index);
+    return static_cast<std::int32_t>(truncated - (index < static_cast<double>(truncated) ? 1 : 0) - base_[axis]);
   }
   /// Of a world index in the box.
   VoxelKey key(const std::array<std::int64_t, 3>& index) const {
@@ -44,12 +50,6 @@ class VoxelFrame {
   }
 
  private:
-  std::int32_t axis_key(double world, std::int64_t base) const {
-    const double index = world / size_m_;
-    const auto truncated = static_cast<std::int64_t>(index);
-    return static_cast<std::int32_t>(truncated - (index < static_cast<double>(truncated) ? 1 : 0) - base);
-  }
-
   double size_m_;
   std::int64_t base_[3];
 };

@@ -28,15 +28,18 @@ class PointsWithin {
     return n;
   }
 
-  /// Whether is_it(slot) holds for any of them; ends at the first, in an order that is always the same.
+  /// Whether is_it(slot) holds for any of them; ends at the first, in an order that is always the same: first those
+  /// around `guess`, a slot whose point is likely to be near.
   template <class IsIt>
-  bool any(const Eigen::Vector3f& place, IsIt is_it) const {
-    return walk(search(place), [&](std::size_t begin, std::size_t end) {
+  bool any(const Eigen::Vector3f& place, std::size_t guess, IsIt is_it) const {
+    const auto use = [&](std::size_t begin, std::size_t end) {
       for (std::size_t slot = begin; slot < end; ++slot) {
         if (is_it(slot)) return true;
       }
       return false;
-    });
+    };
+    const Search from = search(place);
+    return scan_block(from, guess / kBlockSize, use) || walk(from, use);
   }
 
  private:
@@ -61,37 +64,37 @@ class PointsWithin {
   }
 
   template <class Use>
-  bool walk(const Search& search, Use use) const {
+  bool walk(const Search& search, const Use& use) const {
     return walk_node(search, static_cast<int>(index_.boxes.size()) - 1, 0, use);
   }
 
+  using Lanes = Eigen::Array<float, kBlockSize, 1>;
   /// Squared distances from a place to the nearest and the farthest point of sixteen boxes.
   struct BoxDistances {
-    float nearest[kBlockSize], farthest[kBlockSize];
+    Lanes nearest, farthest;
   };
   static BoxDistances distances(const BoxNode& node, const Eigen::Vector3f& place) {
-    BoxDistances found;
-    const float x = place.x(), y = place.y(), z = place.z();
-    for (std::size_t c = 0; c < kBlockSize; ++c) {
-      const float x0 = node.min_x[c] - x, x1 = node.max_x[c] - x, y0 = node.min_y[c] - y, y1 = node.max_y[c] - y;
-      const float z0 = node.min_z[c] - z, z1 = node.max_z[c] - z;
-      const float gx = std::max(std::max(x0, -x1), 0.0f), gy = std::max(std::max(y0, -y1), 0.0f);
-      const float gz = std::max(std::max(z0, -z1), 0.0f);
-      const float fx = std::max(-x0, x1), fy = std::max(-y0, y1), fz = std::max(-z0, z1);
-      found.nearest[c] = gx * gx + gy * gy + gz * gz;
-      found.farthest[c] = fx * fx + fy * fy + fz * fz;
-    }
+    BoxDistances found{Lanes::Zero(), Lanes::Zero()};
+    const auto add = [&](const float(&min)[kBlockSize], const float(&max)[kBlockSize], float at) {
+      const Lanes to_min = Eigen::Map<const Lanes>(min) - at, to_max = Eigen::Map<const Lanes>(max) - at;
+      found.nearest += to_min.max(-to_max).max(0.0f).square();
+      found.farthest += (-to_min).max(to_max).square();
+    };
+    add(node.min_x, node.max_x, place.x());
+    add(node.min_y, node.max_y, place.y());
+    add(node.min_z, node.max_z, place.z());
     return found;
   }
 
   /// Calls use(begin, end) for ranges of slots; true ends the walk.
   template <class Use>
-  bool walk_node(const Search& search, int level, std::size_t node, Use& use) const {
+  bool walk_node(const Search& search, int level, std::size_t node, const Use& use) const {
     const BoxDistances box = distances(index_.boxes[static_cast<std::size_t>(level)][node], search.float_place);
     for (std::size_t c = 0; c < kBlockSize; ++c) {
-      if (!(box.nearest[c] <= search.sq_near)) continue;  // absent ones, too: infinitely far
+      const auto lane = static_cast<Eigen::Index>(c);
+      if (!(box.nearest[lane] <= search.sq_near)) continue;  // absent ones, too: infinitely far
       const std::size_t child = node * kBlockSize + c;
-      const bool ends = box.farthest[c] <= search.sq_whole ? use_all(level, child, use)
+      const bool ends = box.farthest[lane] <= search.sq_whole ? use_all(level, child, use)
                         : level == 0                       ? scan_block(search, child, use)
                                                            : walk_node(search, level - 1, child, use);
       if (ends) return true;
@@ -100,13 +103,13 @@ class PointsWithin {
   }
 
   template <class Use>
-  bool use_all(int level, std::size_t child, Use& use) const {
+  bool use_all(int level, std::size_t child, const Use& use) const {
     const std::size_t n_points = kBlockSize << (4 * level);
     return use(child * n_points, std::min((child + 1) * n_points, index_.points.size));
   }
 
   template <class Use>
-  bool scan_block(const Search& search, std::size_t block, Use& use) const {
+  bool scan_block(const Search& search, std::size_t block, const Use& use) const {
     const std::size_t end = std::min((block + 1) * kBlockSize, index_.points.size);
     for (std::size_t slot = block * kBlockSize; slot < end; ++slot) {
       const Eigen::Vector3f offset = index_.points.offset(slot);

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "cmap/geometry/core_box.hpp"
+#include "cmap/geometry/point_extent.hpp"
 
 namespace cmap {
 namespace {
@@ -15,43 +16,12 @@ constexpr std::uint64_t kManyZeros = 10;
 constexpr double kManyZerosShare = 1e-3;
 
 template <class Real>
-struct PieceBounds {
-  std::array<Real, 3> min, max;
-  bool finite;
-};
-
-/// Bounds of n >= 1 points; four points at a time, so that the loop vectorizes.
-template <class Real>
-PieceBounds<Real> measure(const Real* xyz, std::size_t n) {
-  constexpr std::size_t kLanes = 12;
-  Real low[kLanes], high[kLanes], not_finite[kLanes] = {};
-  for (std::size_t j = 0; j < kLanes; ++j) low[j] = high[j] = xyz[j % 3];
-  const auto add = [&](std::size_t j, Real value) {
-    low[j] = value < low[j] ? value : low[j];
-    high[j] = value > high[j] ? value : high[j];
-    not_finite[j] += value * Real{0};  // NaN from then on if the value is NaN or infinite
-  };
-  std::size_t i = 0;
-  for (; i + kLanes <= 3 * n; i += kLanes) {
-    for (std::size_t j = 0; j < kLanes; ++j) add(j, xyz[i + j]);
-  }
-  for (; i < 3 * n; ++i) add(i % 3, xyz[i]);
-  PieceBounds<Real> bounds{{low[0], low[1], low[2]}, {high[0], high[1], high[2]}, true};
-  for (std::size_t j = 0; j < kLanes; ++j) {
-    bounds.min[j % 3] = std::min(bounds.min[j % 3], low[j]);
-    bounds.max[j % 3] = std::max(bounds.max[j % 3], high[j]);
-    bounds.finite = bounds.finite && not_finite[j] == Real{0};
-  }
-  return bounds;
-}
-
-template <class Real>
 bool is_return(Real value) {
   return std::abs(static_cast<double>(value)) < CloudBuilder::kNoReturn_m;
 }
 
 template <class Real>
-bool all_stay(const PieceBounds<Real>& bounds) {
+bool all_stay(const PointExtent<Real>& bounds) {
   return bounds.finite && std::all_of(bounds.min.begin(), bounds.min.end(), is_return<Real>) &&
          std::all_of(bounds.max.begin(), bounds.max.end(), is_return<Real>);
 }
@@ -63,7 +33,7 @@ bool is_zero(const Real* point) {
 
 /// How many points lie exactly at 0 0 0; the box around the others grows.
 template <class Real>
-std::uint64_t add_to_box(const Real* xyz, std::size_t n, const PieceBounds<Real>& bounds, Box3d& box) {
+std::uint64_t add_to_box(const Real* xyz, std::size_t n, const PointExtent<Real>& bounds, Box3d& box) {
   const auto spans_zero = [&](std::size_t axis) { return bounds.min[axis] <= Real{0} && bounds.max[axis] >= Real{0}; };
   std::uint64_t n_zero = 0;
   if (spans_zero(0) && spans_zero(1) && spans_zero(2)) {
@@ -116,11 +86,11 @@ void CloudBuilder::append_piece(Positions& positions, const PointColumns& column
   using Real = typename Positions::Real;
   Real* xyz = positions.room(n);
   decode_positions(columns, first, n, xyz);
-  PieceBounds<Real> bounds = measure(xyz, n);
+  PointExtent<Real> bounds = point_extent(xyz, n);
   const bool stay = all_stay(bounds);
   const std::size_t n_kept = stay ? n : filter(xyz, n);
   if (n_kept > 0) {
-    if (!stay) bounds = measure(xyz, n_kept);
+    if (!stay) bounds = point_extent(xyz, n_kept);
     n_at_zero_ += add_to_box(xyz, n_kept, bounds, box_);
     colors_.append(source_, columns, first, n, stay ? nullptr : &kept_rows_, seen_);
   }

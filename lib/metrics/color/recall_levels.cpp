@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "cmap/core/parallel.hpp"
@@ -34,9 +35,10 @@ class Queries {
 };
 
 /// The squared distance (1/255) from each point's color to the most similar one of `in` within the radius: exact above
-/// `stop_at`. A point of `in` itself is left out.
+/// `stop_at`. A point of `in` itself is left out. guess(slot) is a slot of `in` that is likely to be near.
+template <class Guess>
 std::vector<double> best_colors(const IndexedMap& reference, std::span<const std::uint32_t> slots, const IndexedMap& in,
-                                double radius_m, double stop_at) {
+                                double radius_m, double stop_at, Guess guess) {
   const PointsWithin within(in.index, radius_m);
   const Queries queries(reference, in);
   const bool own_map = &reference == &in;
@@ -44,7 +46,7 @@ std::vector<double> best_colors(const IndexedMap& reference, std::span<const std
   parallel_chunks(slots.size(), kQueryChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Vector3d color = reference.color(slots[i]);
-      within.any(queries.place(slots[i]), [&](std::size_t slot) {
+      within.any(queries.place(slots[i]), guess(slots[i]), [&](std::size_t slot) {
         if (own_map && slot == slots[i]) return false;
         const double sq_color = (in.color(slot) - color).squaredNorm();
         if (sq_color < best[i]) best[i] = sq_color;  // never of a missing color
@@ -136,6 +138,7 @@ class RecallLevels {
   RecallLevels(LevelInputs& levels, const std::vector<double>& taus, const RecallSamples& samples)
       : reference_(levels.inputs.pair->reference),
         estimate_(levels.inputs.estimate),
+        nearest_in_estimate_(levels.inputs.pair->nearest_in_estimate),
         taus_(taus),
         of_floor_(colored_slots(levels, samples.floor)),
         of_chance_(colored_slots(levels, samples.chance)) {
@@ -145,7 +148,7 @@ class RecallLevels {
 
   /// By tau.
   std::vector<Levels> at(double radius_m) const {
-    const std::vector<double> best = best_colors(reference_, of_floor_, reference_, radius_m, stop_at());
+    const std::vector<double> best = best_colors(reference_, of_floor_, reference_, radius_m, stop_at(), std::identity());
     const std::vector<double> numbers = numbers_within(reference_, of_chance_, estimate_, radius_m);
     std::vector<Levels> found(taus_.size());
     for (std::size_t i = 0; i < taus_.size(); ++i) {
@@ -157,7 +160,8 @@ class RecallLevels {
 
   /// Recall itself, over the floor's points; by tau.
   std::vector<Level> values_at(double radius_m) const {
-    const std::vector<double> best = best_colors(reference_, of_floor_, estimate_, radius_m, stop_at());
+    const auto nearest = [&](std::uint32_t slot) { return nearest_in_estimate_.slot[slot]; };
+    const std::vector<double> best = best_colors(reference_, of_floor_, estimate_, radius_m, stop_at(), nearest);
     std::vector<Level> values;
     for (const double tau : taus_) values.push_back(share_right(best, tau));
     return values;
@@ -169,6 +173,7 @@ class RecallLevels {
   double stop_at() const { return right_color_limit(std::ranges::min(taus_)); }
 
   const IndexedMap &reference_, &estimate_;
+  const NearestField& nearest_in_estimate_;
   const std::vector<double>& taus_;
   std::vector<std::uint32_t> of_floor_, of_chance_;
   std::vector<std::vector<double>> shares_;  ///< by tau
