@@ -19,6 +19,10 @@ struct Strays {
   double mean_without_m = 0.0;
 };
 
+double largest_of(std::span<const double> values) {
+  return Eigen::Map<const Eigen::ArrayXd>(values.data(), static_cast<Eigen::Index>(values.size())).maxCoeff();
+}
+
 std::size_t most_strays(std::size_t n) {
   return n < kFewestPoints ? 0 : std::clamp<std::size_t>(n / 100, 1, kMostStrays);
 }
@@ -60,7 +64,7 @@ Sums sums_without(std::span<const double> sq_dist, const std::vector<std::size_t
 Strays deciding_strays(std::span<const double> sq_dist, const MeanDistances& means) {
   const std::size_t most = most_strays(sq_dist.size());
   const auto n = means.n, n_most = static_cast<double>(most);
-  const double max_m = std::sqrt(std::ranges::max(sq_dist));
+  const double max_m = std::sqrt(largest_of(sq_dist));
   if (most == 0 || max_m < kRounding_m ||
       !decides(n_most * max_m * max_m / (n * means.mean_sq_m2), n_most * max_m / (n * means.mean_m))) {
     return {};

@@ -1,7 +1,7 @@
 #include "point_runs.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
-#include <cmath>
 
 namespace cmap {
 namespace {
@@ -9,8 +9,8 @@ namespace {
 constexpr std::size_t kRunSlots = 4096;  // whose values stay in the first caches
 constexpr std::size_t kTaskSlots = 1 << 16;
 
-/// The band of a distance: thresholds mean what was typed (spatial/threshold.hpp). All are compared with, as which is the
-/// last below a distance cannot be foretold.
+/// The band of a distance: thresholds mean what was typed (spatial/threshold.hpp). It is compared with all of them:
+/// which is the last one below cannot be foretold.
 std::uint32_t band_of(double distance_m, std::span<const double> upper_m, const NearestPairs& pairs, std::size_t slot,
                       double most_rounding_m) {
   std::size_t band = 0;
@@ -20,6 +20,11 @@ std::uint32_t band_of(double distance_m, std::span<const double> upper_m, const 
     --band;
   }
   return static_cast<std::uint32_t>(band);
+}
+
+/// Several numbers at a time.
+Eigen::Map<Eigen::ArrayXd> first(std::vector<double>& values, std::size_t n) {
+  return {values.data(), static_cast<Eigen::Index>(n)};
 }
 
 }  // namespace
@@ -75,7 +80,8 @@ void RunReader::read_distances(PointRun& run) {
   const std::span<const double> upper_m = inputs_.settings.bands.upper_m();
   const double most_rounding_m = pairs.most_rounding_m();
   run.sq_dist = std::span(pairs.nearest.sq_dist).subspan(run.begin, run.size);
-  for (std::size_t i = 0; i < run.size; ++i) distance_m_[i] = std::sqrt(run.sq_dist[i]);
+  std::ranges::copy(run.sq_dist, distance_m_.begin());
+  first(distance_m_, run.size) = first(distance_m_, run.size).sqrt();
   std::ranges::fill(band_begin_, 0);
   for (std::size_t i = 0; i < run.size; ++i) {
     band_[i] = band_of(distance_m_[i], upper_m, pairs, run.begin + i, most_rounding_m);
@@ -96,7 +102,11 @@ void RunReader::read_distances(PointRun& run) {
 
 void RunReader::read_colors(PointRun& run) {
   const NearestPairs pairs = inputs_.pairs(side_);
-  for (std::size_t i = 0; i < run.size; ++i) color_distance_[i] = pairs.color_distance(run.begin + i);
+  for (std::size_t i = 0; i < run.size; ++i) {
+    const std::size_t slot = run.begin + i;
+    color_distance_[i] = (pairs.from_color(slot) - pairs.to_color(slot)).squaredNorm();
+  }
+  first(color_distance_, run.size) = first(color_distance_, run.size).sqrt() / 255.0;
   run.color_distance = std::span(color_distance_).first(run.size);
 }
 

@@ -21,7 +21,8 @@ PointExtent<Real> point_extent(const Real* xyz, std::size_t n) {
   constexpr std::size_t kLanes = 4, kNumbers = 3 * kLanes;
   Lanes low[3], high[3], not_finite[3];
   for (std::size_t k = 0; k < 3; ++k) {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) low[k][static_cast<Eigen::Index>(lane)] = xyz[(k * kLanes + lane) % 3];
+    for (std::size_t lane = 0; lane < kLanes; ++lane)
+      low[k][static_cast<Eigen::Index>(lane)] = xyz[(k * kLanes + lane) % 3];
     high[k] = low[k];
     not_finite[k].setZero();
   }

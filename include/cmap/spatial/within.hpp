@@ -95,8 +95,8 @@ class PointsWithin {
       if (!(box.nearest[lane] <= search.sq_near)) continue;  // absent ones, too: infinitely far
       const std::size_t child = node * kBlockSize + c;
       const bool ends = box.farthest[lane] <= search.sq_whole ? use_all(level, child, use)
-                        : level == 0                       ? scan_block(search, child, use)
-                                                           : walk_node(search, level - 1, child, use);
+                        : level == 0                          ? scan_block(search, child, use)
+                                                              : walk_node(search, level - 1, child, use);
       if (ends) return true;
     }
     return false;

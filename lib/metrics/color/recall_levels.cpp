@@ -148,7 +148,8 @@ class RecallLevels {
 
   /// By tau.
   std::vector<Levels> at(double radius_m) const {
-    const std::vector<double> best = best_colors(reference_, of_floor_, reference_, radius_m, stop_at(), std::identity());
+    const std::vector<double> best =
+        best_colors(reference_, of_floor_, reference_, radius_m, stop_at(), std::identity());
     const std::vector<double> numbers = numbers_within(reference_, of_chance_, estimate_, radius_m);
     std::vector<Levels> found(taus_.size());
     for (std::size_t i = 0; i < taus_.size(); ++i) {
