@@ -36,6 +36,12 @@ class ColorSums {
     return *this;
   }
 
+  /// Takes points off that are among them.
+  ColorSums& operator-=(const ColorSums& other) {
+    for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] -= other.sums_[i];
+    return *this;
+  }
+
   std::uint64_t n() const { return sums_[0]; }
   const Words& words() const { return sums_; }
 
@@ -104,7 +110,6 @@ struct ColorSource {
     moments.add({whole(color.x()), whole(color.y()), whole(color.z())});
   }
   static constexpr bool kHasCorners = false;
-  void merge(Moments& into, const Moments& part) const { into += part; }
 
   bool halves;
   double steps_per_level;  ///< in 1/255

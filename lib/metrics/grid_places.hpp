@@ -8,14 +8,19 @@
 
 namespace cmap {
 
-/// For the points of one cloud in a frame of voxels that has parts and cells.
-inline PartGrid part_grid(const PointBlocks& points, const VoxelFrame& frame, int parts_per_axis, int voxels_per_cell) {
+/// For the points of one cloud in a frame of voxels that has parts and cells. Before the parts of a cell there is room
+/// for `margin` more on each axis.
+inline PartGrid part_grid(const PointBlocks& points, const VoxelFrame& frame, int parts_per_axis, int voxels_per_cell,
+                          int margin = 0) {
+  const int edge = parts_per_axis * voxels_per_cell + margin;
   const std::array<std::int64_t, 3> first = frame.index(VoxelKey{});
   PartGrid grid{.origin = {},
                 .voxel_m = frame.size_m(),
                 .first = {},
                 .parts_per_axis = parts_per_axis,
-                .voxels_per_cell = voxels_per_cell};
+                .voxels_per_cell = voxels_per_cell,
+                .edge = edge,
+                .first_place = margin * (edge * edge + edge + 1)};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     grid.origin[axis] = points.origin[static_cast<Eigen::Index>(axis)];
     grid.first[axis] = static_cast<double>(first[axis]);
@@ -23,7 +28,7 @@ inline PartGrid part_grid(const PointBlocks& points, const VoxelFrame& frame, in
   return grid;
 }
 
-/// Hands every slot of [begin, end) to use(slot, voxel, place), the place being its part's number in its cell.
+/// Hands every slot of [begin, end) to use(slot, voxel, place), the place being its part's place in its cell.
 template <class Use>
 void for_places(const PointBlocks& points, const PartGrid& grid, std::size_t begin, std::size_t end, Use use) {
   GridPlaces places;

@@ -18,6 +18,7 @@
 #include "grid_places.hpp"
 #include "phased_frame.hpp"
 #include "voxels.hpp"
+#include "window_sums.hpp"
 
 // The moments of both maps in every voxel of every phase of a grid, from one pass over the points: those of the parts
 // of voxels are summed, and merged, without error, into the voxels of each phase. Cells of voxels are worked off one by
@@ -56,14 +57,14 @@ inline BothSides<const IndexedMap*> maps_of(const MapPair& pair) { return {&pair
 
 /// Folds the points of a pair of maps, or of one map.
 /// `Source` has
-///   Moments                                                a voxel's sums: +=, and n(),
-///   bool counts(map, slot)                                 whether a point is summed,
-///   void add(Moments&, map, slot, VoxelKey)                adds it,
-///   bool kHasCorners                                       whether sums are about the corners of voxels,
-///   void merge(Moments&, const Moments& part)              adds those of a part; with corners, of a part that a phase
-///                                                          shifts, on each axis, into so many voxels after its own:
-///                                                          merge(Moments&, part, shift, after),
-///   bool halves                                            whether a random half of the reference is asked for.
+///   Moments                                   a voxel's sums: +=, -= and n(),
+///   bool counts(map, slot)                    whether a point is summed,
+///   void add(Moments&, map, slot, VoxelKey)   adds it,
+///   bool kHasCorners                          whether sums are about the corners of voxels; then
+///   void merge(Moments&, const Moments& part, int axis, int shift, int after)
+///                                             adds those of a part that a phase shifts, on this axis, into so many
+///                                             voxels after its own,
+///   bool halves                               whether a random half of the reference is asked for.
 /// `Use`, one for each task, is a copy of `prototype` and has, once for each voxel,
 ///   void voxel(int phase, const VoxelIndex&, const PhaseVoxel<Moments>&),
 ///   void halves(const Moments& one, const Moments& other)  of the reference, in phase 0.
@@ -74,10 +75,15 @@ class PhaseFold {
 
   /// A side without a map has no points.
   PhaseFold(const BothSides<const IndexedMap*>& maps, const PhasedFrame& frame, const Source& source)
-      : maps_(maps), frame_(frame), source_(source) {
-    const std::int32_t m = frame.parts_per_axis();
-    for (std::int32_t k = 0; k < m; ++k) {
-      for (std::int32_t part = 0; part < kVoxels * m; ++part) voxel_of_part_[k][part] = (part + k) / m;
+      : maps_(maps),
+        frame_(frame),
+        source_(source),
+        m_(frame.parts_per_axis()),
+        edge_(kVoxels * m_ + m_ - 1),
+        voxel_on_axis_(static_cast<std::size_t>(edge_)) {
+    for (std::int32_t at = 0; at < edge_; ++at) {
+      const std::int32_t shift = (m_ - 1 - at % m_) % m_;
+      voxel_on_axis_[static_cast<std::size_t>(at)] = {shift, (at - (m_ - 1) + shift) / m_};
     }
   }
 
@@ -89,13 +95,14 @@ class PhaseFold {
         [](std::size_t) { return true; });
     std::vector<Use> used(tasks.size(), prototype);
     std::vector<std::vector<OpenVoxel>> open(tasks.size());
-    TablePool pool(frame_.parts_per_axis());
+    TablePool pool(edge_);
     parallel_chunks(tasks.size(), 1, [&](std::size_t i, std::size_t) {
       std::unique_ptr<Tables> tables = pool.take();
       for (const PairedCell& cell : tasks[i]) {
         sum_points(cell, *tables);
-        if (source_.halves) take_halves(*tables, used[i]);
-        for (int phase = 0; phase < frame_.n_phases(); ++phase) hand_out(phase, cell.cell, *tables, used[i], open[i]);
+        sum_voxels(*tables, [&](std::int32_t place, const Voxel& sums) {
+          hand_out(cell.cell, place, sums, tables->half, used[i], open[i]);
+        });
         tables->clear();
       }
       pool.give(std::move(tables));
@@ -105,38 +112,45 @@ class PhaseFold {
   }
 
  private:
+  using Voxel = PhaseVoxel<Moments>;
   static constexpr std::int32_t kVoxels = 1 << kPhaseCellBits;
 
   /// A voxel of which other cells may hold parts, too.
   struct OpenVoxel {
     int phase;
     VoxelIndex index;
-    PhaseVoxel<Moments> sums;
+    Voxel sums;
     auto order() const { return std::tie(phase, index[0], index[1], index[2]); }
   };
 
-  /// Of one cell: the parts of voxels, by where they lie, and voxels of one phase.
+  /// On an axis, by place of its first part: a voxel's phase, and its key in the cell.
+  struct AxisVoxel {
+    std::int32_t shift, key;
+  };
+
+  /// Of one cell: the parts of voxels, and what becomes of them axis by axis; the half of the reference by voxel.
   struct Tables {
-    explicit Tables(int m)
-        : reference(kVoxels * m), estimate(kVoxels * m), half(kVoxels * m), voxels(kVoxels + 1), halves(kVoxels + 1) {}
+    explicit Tables(std::int32_t edge) : parts(edge * edge * edge), half(kVoxels * kVoxels * kVoxels) {}
     void clear() {
-      reference.clear();
-      estimate.clear();
+      parts.clear();
+      half.clear();
+      ordered.clear();
+      by_x.clear();
+      by_y.clear();
     }
-    LocalGrid<Moments> reference, estimate;
-    LocalGrid<Moments> half;  ///< of the reference, as long as it is apart
-    LocalGrid<PhaseVoxel<Moments>> voxels;
-    LocalGrid<std::array<Moments, 2>> halves;
+    LocalGrid<Voxel> parts;
+    LocalGrid<Moments> half;
+    std::vector<PlacedSums<Voxel>> ordered, by_x, by_y;
   };
 
   /// Tables that tasks leave to each other: making them costs as much as some thousand points.
   class TablePool {
    public:
-    explicit TablePool(int parts_per_axis) : parts_per_axis_(parts_per_axis) {}
+    explicit TablePool(std::int32_t edge) : edge_(edge) {}
 
     std::unique_ptr<Tables> take() {
       const std::lock_guard lock(mutex_);
-      if (idle_.empty()) return std::make_unique<Tables>(parts_per_axis_);
+      if (idle_.empty()) return std::make_unique<Tables>(edge_);
       std::unique_ptr<Tables> tables = std::move(idle_.back());
       idle_.pop_back();
       return tables;
@@ -147,7 +161,7 @@ class PhaseFold {
     }
 
    private:
-    int parts_per_axis_;
+    std::int32_t edge_;
     std::mutex mutex_;
     std::vector<std::unique_ptr<Tables>> idle_;
   };
@@ -158,87 +172,84 @@ class PhaseFold {
   }
 
   void sum_points(const PairedCell& cell, Tables& tables) const {
+    for_points(Side::kEstimate, cell,
+               [&](const IndexedMap& map, std::size_t slot, const VoxelKey& voxel, std::int32_t place) {
+                 source_.add(tables.parts[place].estimate, map, slot, voxel);
+               });
     for_points(
-        Side::kEstimate, cell, [&](std::size_t) -> auto& { return tables.estimate; });
-    if (!source_.halves) {
-      for_points(
-          Side::kReference, cell, [&](std::size_t) -> auto& { return tables.reference; });
-      return;
-    }
-    for_points(
-        Side::kReference, cell, [&](std::size_t slot) -> auto& {
-          const std::uint32_t original = maps_.reference->index.points.original_index[slot];
-          return random_hash(original, kHalvesSeed) & 1 ? tables.half : tables.reference;
+        Side::kReference, cell,
+        [&](const IndexedMap& map, std::size_t slot, const VoxelKey& voxel, std::int32_t place) {
+          source_.add(tables.parts[place].reference, map, slot, voxel);
+          if (!source_.halves || (random_hash(map.index.points.original_index[slot], kHalvesSeed) & 1) == 0) return;
+          constexpr std::int32_t kLocal = kVoxels - 1;
+          source_.add(tables.half[place_of({voxel.x & kLocal, voxel.y & kLocal, voxel.z & kLocal})], map, slot, voxel);
         });
   }
 
-  /// Adds every point to the table that table_of(slot) gives.
-  template <class TableOf>
-  void for_points(Side side, const PairedCell& cell, TableOf table_of) const {
+  /// Hands every point that counts to use(map, slot, voxel, place of its part).
+  template <class UsePoint>
+  void for_points(Side side, const PairedCell& cell, UsePoint use) const {
     if (cell.runs.of(side).empty()) return;
     const IndexedMap& map = *maps_.of(side);
     const PointBlocks& points = map.index.points;
-    const PartGrid grid = part_grid(points, frame_.voxels(), frame_.parts_per_axis(), kVoxels);
+    const PartGrid grid = part_grid(points, frame_.voxels(), m_, kVoxels, m_ - 1);
     for (const CellRun& run : cell.runs.of(side)) {
       for_places(points, grid, run.begin, run.end, [&](std::size_t slot, const VoxelKey& voxel, std::int32_t place) {
-        if (source_.counts(map, slot)) source_.add(table_of(slot).at_place(place), map, slot, voxel);
+        if (source_.counts(map, slot)) use(map, slot, voxel, place);
       });
     }
   }
 
-  /// Hands both halves of the reference out, and puts them together.
-  void take_halves(Tables& tables, Use& use) const {
-    const auto gather = [&](const LocalGrid<Moments>& parts, std::size_t half) {
-      for (const auto& [part, moments] : parts.entries()) {
-        tables.halves[voxel_of(part, {0, 0, 0})][half] += moments;
+  static std::int32_t place_of(const VoxelKey& in_cell) {
+    return (in_cell.x * kVoxels + in_cell.y) * kVoxels + in_cell.z;
+  }
+
+  /// Every window of m x m x m parts is a voxel of one phase: their sums, by the place of the first part.
+  template <class UseVoxel>
+  void sum_voxels(Tables& tables, UseVoxel use) const {
+    if (m_ == 1) return tables.parts.in_order(use);
+    tables.parts.in_order([&](std::int32_t place, const Voxel& sums) { tables.ordered.push_back({place, sums}); });
+    const auto append_to = [](std::vector<PlacedSums<Voxel>>& windows) {
+      return [&windows](std::int32_t place, const Voxel& sums) { windows.push_back({place, sums}); };
+    };
+    sum_windows_on(0, tables.ordered, append_to(tables.by_x));
+    sum_windows_on(1, tables.by_x, append_to(tables.by_y));
+    sum_windows_on(2, tables.by_y, use);
+  }
+
+  template <class Emit>
+  void sum_windows_on(int axis, std::span<const PlacedSums<Voxel>> parts, Emit emit) const {
+    const std::int32_t stride = axis == 0 ? edge_ * edge_ : axis == 1 ? edge_ : 1;
+    const auto merge = [&](Voxel& into, const PlacedSums<Voxel>& part, std::int32_t window) {
+      if constexpr (Source::kHasCorners) {
+        const auto [shift, key] = voxel_on_axis_[static_cast<std::size_t>(window / stride % edge_)];
+        const int after = key - (part.place / stride % edge_ - (m_ - 1)) / m_;
+        source_.merge(into.reference, part.sums.reference, axis, shift, after);
+        source_.merge(into.estimate, part.sums.estimate, axis, shift, after);
+      } else {
+        into.reference += part.sums.reference;
+        into.estimate += part.sums.estimate;
       }
     };
-    gather(tables.half, 0);
-    gather(tables.reference, 1);
-    for (const auto& [at, halves] : tables.halves.entries()) use.halves(halves[0], halves[1]);
-    tables.halves.clear();
-    for (const auto& [part, moments] : tables.half.entries()) tables.reference[part] += moments;
-    tables.half.clear();
+    m_ == 2 ? sum_windows<2>(parts, stride, merge, emit) : sum_windows<3>(parts, stride, merge, emit);
   }
 
-  /// The voxel, counted from the cell's corner, that holds a part in a phase with such a shift.
-  LocalKey voxel_of(const LocalKey& part, const LocalKey& shift) const {
-    LocalKey voxel;
-    for (std::size_t axis = 0; axis < 3; ++axis) voxel[axis] = voxel_of_part_[shift[axis]][part[axis]];
-    return voxel;
-  }
-
-  void hand_out(int phase, const VoxelKey& cell, Tables& tables, Use& use, std::vector<OpenVoxel>& open) const {
-    const LocalKey shift = frame_.shift(phase);
-    merge(tables.reference, shift, tables.voxels, &PhaseVoxel<Moments>::reference);
-    merge(tables.estimate, shift, tables.voxels, &PhaseVoxel<Moments>::estimate);
-    for (const auto& [at, sums] : tables.voxels.entries()) {
-      bool is_open = false;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        is_open = is_open || (shift[axis] > 0 && (at[axis] == 0 || at[axis] == kVoxels));
-      }
-      const VoxelIndex index =
-          frame_.voxels().index(VoxelKey{cell.x * kVoxels + at[0], cell.y * kVoxels + at[1], cell.z * kVoxels + at[2]});
-      if (is_open) {
-        open.push_back({phase, index, sums});
-      } else {
-        use.voxel(phase, index, sums);
-      }
-    }
-    tables.voxels.clear();
-  }
-
-  void merge(const LocalGrid<Moments>& parts, const LocalKey& shift, LocalGrid<PhaseVoxel<Moments>>& voxels,
-             Moments PhaseVoxel<Moments>::*side) const {
-    for (const auto& [part, moments] : parts.entries()) {
-      const LocalKey at = voxel_of(part, shift);
-      Moments& into = voxels[at].*side;
-      if constexpr (Source::kHasCorners) {
-        const LocalKey own = voxel_of(part, {0, 0, 0});
-        source_.merge(into, moments, shift, {at[0] - own[0], at[1] - own[1], at[2] - own[2]});
-      } else {
-        source_.merge(into, moments);
-      }
+  void hand_out(const VoxelKey& cell, std::int32_t place, const Voxel& sums, const LocalGrid<Moments>& half, Use& use,
+                std::vector<OpenVoxel>& open) const {
+    const std::array<AxisVoxel, 3> on_axis{voxel_on_axis_[static_cast<std::size_t>(place / (edge_ * edge_))],
+                                           voxel_on_axis_[static_cast<std::size_t>(place / edge_ % edge_)],
+                                           voxel_on_axis_[static_cast<std::size_t>(place % edge_)]};
+    const auto [x, y, z] = on_axis;
+    const int phase = (x.shift * m_ + y.shift) * m_ + z.shift;
+    const VoxelIndex index =
+        frame_.voxels().index(VoxelKey{cell.x * kVoxels + x.key, cell.y * kVoxels + y.key, cell.z * kVoxels + z.key});
+    const auto at_border = [](const AxisVoxel& v) { return v.shift > 0 && (v.key == 0 || v.key == kVoxels); };
+    if (std::ranges::any_of(on_axis, at_border)) return open.push_back({phase, index, sums});
+    use.voxel(phase, index, sums);
+    if (phase > 0 || !source_.halves) return;
+    if (const Moments* one = half.find(place_of({x.key, y.key, z.key}))) {
+      Moments other = sums.reference;
+      use.halves(*one, other -= *one);
     }
   }
 
@@ -266,7 +277,9 @@ class PhaseFold {
   BothSides<const IndexedMap*> maps_;
   const PhasedFrame& frame_;
   const Source& source_;
-  std::int32_t voxel_of_part_[3][3 * kVoxels] = {};  ///< by shift and part of a cell, on an axis
+  std::int32_t m_;
+  std::int32_t edge_;  ///< of the places of a cell: its parts, and before them where windows begin that end in it
+  std::vector<AxisVoxel> voxel_on_axis_;
 };
 
 }  // namespace cmap

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "cmap/geometry/voxel_map.hpp"
-#include "voxels.hpp"
 
 namespace cmap {
 
@@ -16,8 +15,6 @@ class PhasedFrame {
   const VoxelFrame& voxels() const { return voxels_; }
   int parts_per_axis() const { return m_; }
   int n_phases() const { return m_ * m_ * m_; }
-  /// By how many parts a phase is shifted.
-  LocalKey shift(int phase) const { return {phase / (m_ * m_), phase / m_ % m_, phase % m_}; }
 
  private:
   VoxelFrame voxels_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -51,56 +52,60 @@ std::vector<std::span<const Item>> point_tasks(std::span<const Item> items, Poin
 /// Runs of whole cells for one task each: enough points to be worth one, where there are so many.
 std::vector<std::span<const CellRun>> cell_tasks(std::span<const CellRun> runs);
 
-/// A place within a cell, counted from its corner.
-using LocalKey = std::array<std::int32_t, 3>;
-
-/// Sums of the places of one cell, in order of first use; every place has its entry in a table that fits the
-/// second-level cache.
+/// Sums of the places of one cell; every place has its entry in a table that fits the second-level cache.
 template <class Sums>
 class LocalGrid {
  public:
   struct Entry {
-    LocalKey key;
+    std::int32_t place;
     Sums sums;
   };
 
-  /// Of `edge` places an axis.
-  explicit LocalGrid(std::int32_t edge)
-      : edge_(edge), entry_at_(static_cast<std::size_t>(edge) * static_cast<std::size_t>(edge * edge), kFree) {}
+  explicit LocalGrid(std::int32_t n_places)
+      : entry_at_(static_cast<std::size_t>(n_places), kFree), is_taken_(entry_at_.size() / 64 + 1) {}
 
-  Sums& operator[](const LocalKey& key) {
-    std::uint32_t& entry = entry_at_[place(key)];
-    if (entry == kFree) [[unlikely]]
-      entry = add_entry(key);
-    return entries_[entry].sums;
-  }
-  /// By a place's number, x slowest.
-  Sums& at_place(std::int32_t place) {
+  Sums& operator[](std::int32_t place) {
     std::uint32_t& entry = entry_at_[static_cast<std::size_t>(place)];
     if (entry == kFree) [[unlikely]]
-      entry = add_entry({place / (edge_ * edge_), place / edge_ % edge_, place % edge_});
+      entry = add_entry(place);
     return entries_[entry].sums;
   }
+  const Sums* find(std::int32_t place) const {
+    const std::uint32_t entry = entry_at_[static_cast<std::size_t>(place)];
+    return entry == kFree ? nullptr : &entries_[entry].sums;
+  }
+  /// In order of first use.
   std::span<const Entry> entries() const { return entries_; }
+  /// Hands entries to use(place, sums) in order of places.
+  template <class Use>
+  void in_order(Use use) const {
+    for (std::size_t word = 0; word < is_taken_.size(); ++word) {
+      for (std::uint64_t bits = is_taken_[word]; bits != 0; bits &= bits - 1) {
+        const std::size_t place = 64 * word + static_cast<std::size_t>(std::countr_zero(bits));
+        use(static_cast<std::int32_t>(place), entries_[entry_at_[place]].sums);
+      }
+    }
+  }
   /// Makes room for the next cell.
   void clear() {
-    for (const Entry& entry : entries_) entry_at_[place(entry.key)] = kFree;
+    for (const Entry& entry : entries_) {
+      entry_at_[static_cast<std::size_t>(entry.place)] = kFree;
+      is_taken_[static_cast<std::size_t>(entry.place) / 64] = 0;
+    }
     entries_.clear();
   }
 
  private:
   static constexpr std::uint32_t kFree = ~0u;
 
-  [[gnu::noinline]] std::uint32_t add_entry(const LocalKey& key) {
-    entries_.push_back({key, {}});
+  [[gnu::noinline]] std::uint32_t add_entry(std::int32_t place) {
+    is_taken_[static_cast<std::size_t>(place) / 64] |= std::uint64_t{1} << (place % 64);
+    entries_.push_back({place, {}});
     return static_cast<std::uint32_t>(entries_.size() - 1);
   }
-  std::size_t place(const LocalKey& key) const {
-    return static_cast<std::size_t>((key[0] * edge_ + key[1]) * edge_ + key[2]);
-  }
 
-  std::int32_t edge_;
   std::vector<std::uint32_t> entry_at_;
+  std::vector<std::uint64_t> is_taken_;  ///< a bit for each place
   std::vector<Entry> entries_;
 };
 
@@ -115,11 +120,13 @@ std::vector<Result> fold_voxels(const Bvh& cloud, const VoxelFrame& frame, AddPo
   const PartGrid grid = part_grid(cloud.points, frame, 1, kEdge);
   std::vector<Result> results(tasks.size());
   parallel_chunks(tasks.size(), 1, [&](std::size_t i, std::size_t) {
-    LocalGrid<Sums> voxels(kEdge);
+    LocalGrid<Sums> voxels(kEdge * kEdge * kEdge);
     VoxelKey cell = tasks[i].front().cell;
     const auto use_cell = [&] {
-      for (const auto& [at, sums] : voxels.entries()) {
-        use(results[i], VoxelKey{cell.x * kEdge + at[0], cell.y * kEdge + at[1], cell.z * kEdge + at[2]}, sums);
+      for (const auto& [place, sums] : voxels.entries()) {
+        const VoxelKey key{cell.x * kEdge + place / (kEdge * kEdge), cell.y * kEdge + place / kEdge % kEdge,
+                           cell.z * kEdge + place % kEdge};
+        use(results[i], key, sums);
       }
       voxels.clear();
     };
@@ -127,7 +134,7 @@ std::vector<Result> fold_voxels(const Bvh& cloud, const VoxelFrame& frame, AddPo
       if (run.cell != cell) use_cell();
       cell = run.cell;
       for_places(cloud.points, grid, run.begin, run.end,
-                 [&](std::size_t slot, const VoxelKey&, std::int32_t place) { add(voxels.at_place(place), slot); });
+                 [&](std::size_t slot, const VoxelKey&, std::int32_t place) { add(voxels[place], slot); });
     }
     use_cell();
   });

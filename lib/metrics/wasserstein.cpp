@@ -33,11 +33,9 @@ struct PlaceSource {
     moments.add(steps_of.offset(map.index.points.world(slot), voxel));
   }
   static constexpr bool kHasCorners = true;
-  void merge(Moments& into, const Moments& part, const LocalKey& shift, const LocalKey& after) const {
+  void merge(Moments& into, const Moments& part, int axis, int shift, int after) const {
     std::array<std::int64_t, 3> by{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      by[axis] = corner_steps[static_cast<std::size_t>(shift[axis])][static_cast<std::size_t>(after[axis])];
-    }
+    by[static_cast<std::size_t>(axis)] = corner_steps[static_cast<std::size_t>(shift)][static_cast<std::size_t>(after)];
     into.add_moved(part, by);
   }
 

@@ -34,12 +34,12 @@ void grid_places(const PartGrid& grid, const PointBlock& points, GridPlaces& pla
   axis_places(grid, 0, points.x, x);
   axis_places(grid, 1, points.y, y);
   axis_places(grid, 2, points.z, z);
-  const std::int32_t edge = grid.voxels_per_cell * grid.parts_per_axis;
+  const std::int32_t edge = grid.edge;
   for (std::size_t i = 0; i < kBlockSize; ++i) {
     places.x[i] = x.key[i];
     places.y[i] = y.key[i];
     places.z[i] = z.key[i];
-    places.in_cell[i] = (x.part[i] * edge + y.part[i]) * edge + z.part[i];
+    places.in_cell[i] = grid.first_place + (x.part[i] * edge + y.part[i]) * edge + z.part[i];
   }
 }
 

@@ -14,9 +14,11 @@ struct PartGrid {
   double voxel_m;
   double first[3];  ///< the index of the voxel of key 0, a whole number
   std::int32_t parts_per_axis, voxels_per_cell;
+  std::int32_t edge;         ///< of the places of a cell: its parts, and some more
+  std::int32_t first_place;  ///< of its first part
 };
 
-/// Of each point of a block the voxel's key, and the part's number in its cell, x slowest.
+/// Of each point of a block the voxel's key, and the part's place in its cell: edges of places, x slowest.
 struct GridPlaces {
   alignas(64) std::int32_t x[kBlockSize], y[kBlockSize], z[kBlockSize], in_cell[kBlockSize];
 };
