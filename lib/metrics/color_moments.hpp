@@ -16,20 +16,21 @@ class ColorMoments {
  public:
   /// A color in units of 1/255.
   void add(const Eigen::Vector3f& color, const Eigen::Vector3f& place) {
-    if (n_ == 0) place_ = place;
-    one_place_ = one_place_ && place == place_;
-    ++n_;
-    for (std::size_t channel = 0; channel < 3; ++channel) {
-      const std::uint64_t c = whole_32(kSteps * static_cast<double>(color[static_cast<Eigen::Index>(channel)]));
-      sum_[channel] += c;
-      squares_.add(c * c);
+    if (++n_ == 1) {
+      place_ = place;
+      first_ = color;
+      return;
     }
+    one_place_ = one_place_ && place == place_;
+    add_to_sums(color);
   }
 
   ColorMoments& operator+=(const ColorMoments& other) {
-    if (n_ == 0) place_ = other.place_;
-    one_place_ = one_place_ && other.one_place_ && (other.n_ == 0 || other.place_ == place_);
+    if (other.n_ == 0) return *this;
+    if (n_ == 0) return *this = other;
+    one_place_ = one_place_ && other.one_place_ && other.place_ == place_;
     n_ += other.n_;
+    add_to_sums(other.first_);
     for (std::size_t channel = 0; channel < 3; ++channel) sum_[channel] += other.sum_[channel];
     squares_ += other.squares_;
     return *this;
@@ -41,21 +42,30 @@ class ColorMoments {
   /// Trace of the covariance in unit RGB squared; 0 of one point.
   double covariance_trace() const {
     if (n_ < 2) return 0.0;
+    ColorMoments all = *this;
+    all.add_to_sums(first_);
     const auto count = static_cast<double>(n_);
     double sq_sum = 0.0;
-    for (const std::uint64_t sum : sum_) sq_sum += in_255(sum) * in_255(sum);
-    const double sum_sq = static_cast<double>(squares_.value()) / (kSteps * kSteps);
+    for (const std::uint64_t sum : all.sum_) sq_sum += in_255(sum) * in_255(sum);
+    const double sum_sq = static_cast<double>(all.squares_.value()) / (kSteps * kSteps);
     return std::max(0.0, (sum_sq - sq_sum / count) / (count - 1.0)) / (255.0 * 255.0);
   }
 
  private:
   static constexpr double kSteps = 0x1p24;  ///< in 1/255
+  void add_to_sums(const Eigen::Vector3f& color) {
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      const std::uint64_t c = whole_32(kSteps * static_cast<double>(color[static_cast<Eigen::Index>(channel)]));
+      sum_[channel] += c;
+      squares_.add(c * c);
+    }
+  }
   static double in_255(std::uint64_t sum) { return static_cast<double>(sum) / kSteps; }
 
   std::uint32_t n_ = 0;
   bool one_place_ = true;
-  Eigen::Vector3f place_ = Eigen::Vector3f::Zero();  ///< of the first point
-  std::array<std::uint64_t, 3> sum_{};
+  Eigen::Vector3f place_ = Eigen::Vector3f::Zero(), first_ = Eigen::Vector3f::Zero();  ///< of the first point
+  std::array<std::uint64_t, 3> sum_{};  ///< of the others: many voxels hold a single point
   WideSum squares_;
 };
 

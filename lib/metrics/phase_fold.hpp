@@ -118,9 +118,15 @@ class PhaseFold {
   /// A voxel of which other cells may hold parts, too.
   struct OpenVoxel {
     int phase;
-    VoxelIndex index;
+    VoxelKey key;
     Voxel sums;
-    auto order() const { return std::tie(phase, index[0], index[1], index[2]); }
+    /// By phase and key: keys are not negative.
+    std::array<std::uint64_t, 2> order() const {
+      const auto words = [](std::int64_t high, std::int64_t low) {
+        return static_cast<std::uint64_t>(high << 32 | low);
+      };
+      return {words(phase, key.x), words(key.y, key.z)};
+    }
   };
 
   /// On an axis, by place of its first part: a voxel's phase, and its key in the cell.
@@ -241,11 +247,10 @@ class PhaseFold {
                                            voxel_on_axis_[static_cast<std::size_t>(place % edge_)]};
     const auto [x, y, z] = on_axis;
     const int phase = (x.shift * m_ + y.shift) * m_ + z.shift;
-    const VoxelIndex index =
-        frame_.voxels().index(VoxelKey{cell.x * kVoxels + x.key, cell.y * kVoxels + y.key, cell.z * kVoxels + z.key});
+    const VoxelKey key{cell.x * kVoxels + x.key, cell.y * kVoxels + y.key, cell.z * kVoxels + z.key};
     const auto at_border = [](const AxisVoxel& v) { return v.shift > 0 && (v.key == 0 || v.key == kVoxels); };
-    if (std::ranges::any_of(on_axis, at_border)) return open.push_back({phase, index, sums});
-    use.voxel(phase, index, sums);
+    if (std::ranges::any_of(on_axis, at_border)) return open.push_back({phase, key, sums});
+    use.voxel(phase, frame_.voxels().index(key), sums);
     if (phase > 0 || !source_.halves) return;
     if (const Moments* one = half.find(place_of({x.key, y.key, z.key}))) {
       Moments other = sums.reference;
@@ -255,20 +260,26 @@ class PhaseFold {
 
   /// Puts the open voxels of all tasks together.
   void close(const std::vector<std::vector<OpenVoxel>>& by_task, const Use& prototype, std::vector<Use>& used) const {
-    std::vector<const OpenVoxel*> open;
+    struct Ordered {
+      std::array<std::uint64_t, 2> order;
+      const OpenVoxel* voxel;
+    };
+    std::vector<Ordered> open;
     for (const auto& voxels : by_task) {
-      for (const OpenVoxel& voxel : voxels) open.push_back(&voxel);
+      for (const OpenVoxel& voxel : voxels) open.push_back({voxel.order(), &voxel});
     }
-    std::ranges::sort(open, {}, [](const OpenVoxel* voxel) { return voxel->order(); });
+    std::ranges::sort(open, [](const Ordered& a, const Ordered& b) {
+      return a.order[0] != b.order[0] ? a.order[0] < b.order[0] : a.order[1] < b.order[1];
+    });
     Use rest = prototype;
     for (auto first = open.begin(); first != open.end();) {
-      PhaseVoxel<Moments> sums = (*first)->sums;
+      Voxel sums = first->voxel->sums;
       auto next = std::next(first);
-      for (; next != open.end() && (*next)->order() == (*first)->order(); ++next) {
-        sums.reference += (*next)->sums.reference;
-        sums.estimate += (*next)->sums.estimate;
+      for (; next != open.end() && next->order[0] == first->order[0] && next->order[1] == first->order[1]; ++next) {
+        sums.reference += next->voxel->sums.reference;
+        sums.estimate += next->voxel->sums.estimate;
       }
-      rest.voxel((*first)->phase, (*first)->index, sums);
+      rest.voxel(first->voxel->phase, frame_.voxels().index(first->voxel->key), sums);
       first = next;
     }
     used.push_back(std::move(rest));

@@ -56,7 +56,7 @@ VoxelMoments& VoxelMoments::operator-=(const VoxelMoments& other) {
 }
 
 void VoxelMoments::add_moved(const VoxelMoments& other, const std::array<std::int64_t, 3>& by) {
-  if (by == std::array<std::int64_t, 3>{}) {
+  if ((by[0] | by[1] | by[2]) == 0) {
     *this += other;
     return;
   }

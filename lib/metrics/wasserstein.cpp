@@ -131,7 +131,12 @@ VoxelWasserstein voxel_wasserstein(const MapPair& pair, const PhaseOptions& opti
     }
   }
   std::ranges::sort(all.gaussians, {}, &GaussianPair::index);
-  for (auto& voxels : all.by_phase) std::ranges::sort(voxels, {}, &VoxelDistance::index);
+  for (auto& voxels : all.by_phase) {
+    std::ranges::sort(voxels, [](const VoxelDistance& a, const VoxelDistance& b) {
+      if (a.index[0] != b.index[0]) return a.index[0] < b.index[0];
+      return a.index[1] != b.index[1] ? a.index[1] < b.index[1] : a.index[2] < b.index[2];
+    });
+  }
   return all;
 }
 
