@@ -9,7 +9,9 @@
 #include "cmap/align/align_method.hpp"
 #include "cmap/align/tanks_and_temples.hpp"
 #include "cmap/align/trajectory.hpp"
+#include "cmap/align/trust.hpp"
 #include "cmap/core/execution.hpp"
+#include "cmap/metrics/metric_options.hpp"
 #include "command_line.hpp"
 #include "files.hpp"
 #include "program.hpp"
@@ -30,15 +32,15 @@ constexpr const char* kExample =
     "  cmap_align data_samples/town/estimate.ply data_samples/town/reference.ply --method gicp --voxel 0.2 -o T.txt\n"
     "\n"
     "Exit codes: 0 done; 2 wrong usage; 3 an input is missing, malformed or without a finite point;\n"
-    "4 the alignment cannot be determined: no overlap, or a direction that the geometry leaves free; 70 internal "
-    "error.";
+    "4 the alignment cannot be determined: no overlap, a direction that the geometry leaves free, or a verdict other\n"
+    "than determined or a little weak, unless --allow-unconverged; 70 internal error.";
 
 struct Arguments {
   std::string source, target, initial, times, output, json, cloud;
   cmap::AlignMethod method{AlignKind::kRegistration, &cmap::registration_method("gicp")};
   cmap::TrajectoryFit fit = cmap::TrajectoryFit::kSim3;
   double voxel_m = 0.0, max_distance_m = 0.0, tau_m = 0.0, max_gap_s = 0.15;
-  bool scale = false, keep_noise = false;
+  bool scale = false, keep_noise = false, allow_unconverged = false;
   std::vector<std::uint8_t> classes;
   cmap::CommonArguments common;
 
@@ -89,6 +91,8 @@ void add_options(cmap::CommandLine& line, Arguments& a) {
   line.add("--output-cloud", a.cloud, "FILE.ply", "SRC as moved onto DST, to write").not_empty();
   line.add("--json", a.json, "FILE", "everything about the result, to write").not_empty();
   add_method_options(line, a);
+  line.add_flag("--allow-unconverged", a.allow_unconverged,
+                "write also what is not to be trusted, with a warning; else it ends with exit code 4");
   line.add_flag("--keep-noise", a.keep_noise, "LAS: points of the noise classes 7 and 18 count too");
   line.add("--classes", a.classes, "N,...", "LAS: only points of these classes count (2 is ground)").with_commas();
   cmap::add_common_options(line, a.common, "no table and no warnings");
@@ -120,9 +124,9 @@ void refuse_unused(const cmap::CommandLine& line, const cmap::AlignMethod& metho
 
 struct Result {
   cmap::Alignment alignment;
-  nlohmann::ordered_json json;
-  std::string scores;           ///< further lines of the table
-  cmap::PointCloud moved = {};  ///< where it is to be written
+  nlohmann::ordered_json further = nlohmann::ordered_json::object();  ///< beside the alignment's own
+  std::string scores;                                                 ///< further lines of the table
+  cmap::PointCloud moved = {};                                        ///< where it is to be written
 };
 
 /// What was said of the inputs comes before what the alignment says.
@@ -143,7 +147,6 @@ Result align_trajectories(const Arguments& a) {
   }
   add_warnings(target.warnings, result.alignment);
   add_warnings(source.warnings, result.alignment);
-  result.json = cmap::alignment_json(result.alignment);
   return result;
 }
 
@@ -154,11 +157,9 @@ Result run_tanks_and_temples(const Arguments& a, const cmap::PointCloud& source,
   options.tau_m = a.tau_m;
   cmap::TanksAndTemplesResult found = cmap::tanks_and_temples(source, target, T_initial, options);
   add_warnings(warnings, found.alignment);
-  Result result{found.alignment, cmap::alignment_json(found.alignment), {}};
-  result.json["tau_m"] = a.tau_m;
-  result.json["precision"] = found.precision;
-  result.json["recall"] = found.recall;
-  result.json["f_score"] = found.f_score;
+  Result result{found.alignment, {}, {}};
+  result.further = {
+      {"tau_m", a.tau_m}, {"precision", found.precision}, {"recall", found.recall}, {"f_score", found.f_score}};
   result.scores = fmt::format("precision   {:.6g}\nrecall      {:.6g}\nF           {:.6g}   at tau {:g} m\n",
                               found.precision, found.recall, found.f_score, a.tau_m);
   return result;
@@ -178,7 +179,6 @@ Result align_maps(const Arguments& a) {
   } else {
     result.alignment = cmap::align(source.cloud, target.cloud, *a.method.registration, options);
     add_warnings(warnings, result.alignment);
-    result.json = cmap::alignment_json(result.alignment);
   }
   if (!a.cloud.empty()) result.moved = cmap::transformed(source.cloud, result.alignment.T_dst_src);
   return result;
@@ -186,7 +186,8 @@ Result align_maps(const Arguments& a) {
 
 std::string table(const Result& result) {
   const cmap::Alignment& a = result.alignment;
-  std::string text = fmt::format("method      {}\nscale       {:.8g}\n", a.method, a.scale);
+  std::string text = fmt::format("method      {}\n", a.method) + verdict_lines(a);
+  text += fmt::format("scale       {:.8g}\n", a.scale);
   text += fmt::format("overlap     {:.4g}   {} of {} points", a.overlap, a.n_matches, a.n_source);
   text += a.max_distance_m > 0.0 ? fmt::format(" within {:.4g} m\n", a.max_distance_m) : "\n";
   text += fmt::format("RMSE        {:.6g} m\n", a.rmse_m);
@@ -196,19 +197,41 @@ std::string table(const Result& result) {
   return text + result.scores;
 }
 
+std::string json_text(const Result& result) {
+  nlohmann::ordered_json json = cmap::alignment_json(result.alignment);
+  json.update(result.further);
+  return json.dump(2) + "\n";
+}
+
+void print_warnings(const Arguments& a, const cmap::Alignment& alignment) {
+  if (a.common.quiet) return;
+  for (const std::string& warning : alignment.warnings) fmt::print(stderr, "warning: {}\n", warning);
+}
+
+/// Ends with the reason where the result is not to be trusted. What is weaker than the largest threshold of a plain
+/// evaluation would decide its scores.
+void require_trust(const Arguments& a, cmap::Alignment& alignment) {
+  const std::vector<double> thresholds_m = cmap::MetricOptions().thresholds_m;
+  try {
+    cmap::require_trust(alignment, {.allow_unconverged = a.allow_unconverged,
+                                    .largest_error_m = *std::ranges::max_element(thresholds_m)});
+  } catch (const cmap::UnsupportedError&) {
+    print_warnings(a, alignment);
+    throw;
+  }
+}
+
 /// Prints and writes everything, or writes nothing.
 void deliver(const Arguments& a, const Result& result) {
   const std::string matrix = cmap::transform_text(result.alignment.T_dst_src);
   cmap::OutputFiles files;
   files.add(a.output, [&](cmap::OutputFile& file) { file.write(matrix); });
-  files.add(a.json, [&](cmap::OutputFile& file) { file.write(result.json.dump(2) + "\n"); });
+  files.add(a.json, [&](cmap::OutputFile& file) { file.write(json_text(result)); });
   files.add(a.cloud, [&](cmap::OutputFile& file) { cmap::write_ply(file, result.moved); });
   if (!a.common.quiet && !cmap::any_to_standard_output(a.outputs())) {
     cmap::print(table(result) + (a.output.empty() ? "T_dst_src\n" + matrix : ""));
   }
-  if (!a.common.quiet) {
-    for (const std::string& warning : result.alignment.warnings) fmt::print(stderr, "warning: {}\n", warning);
-  }
+  print_warnings(a, result.alignment);
   files.commit();
 }
 
@@ -218,7 +241,9 @@ cmap::ExitCode run(const cmap::CommandLine& line, const Arguments& a) {
   cmap::refuse_overwriting({a.source, a.target, a.initial, a.times}, a.outputs());
   for (const std::string& output : a.outputs()) cmap::require_writable(output);
   cmap::check_extension(a.cloud, {".ply", ".PLY"}, "the moved map is written as PLY");
-  deliver(a, a.method.kind == AlignKind::kTrajectory ? align_trajectories(a) : align_maps(a));
+  Result result = a.method.kind == AlignKind::kTrajectory ? align_trajectories(a) : align_maps(a);
+  require_trust(a, result.alignment);
+  deliver(a, result);
   return cmap::ExitCode::kDone;
 }
 

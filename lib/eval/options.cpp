@@ -82,6 +82,8 @@ OptionFields alignment_fields(EvaluationOptions& o) {
       field("align-distance", o.align_distance_m, kPositive, "METERS",
             "farther pairs are no matches; by default 10 voxels"),
       field("align-scale", o.align_scale, "also find the scale, where the method leaves the choice (sim3 always does)"),
+      beside(field("allow-unconverged", o.allow_unconverged,
+                   "score also what an alignment that is not to be trusted gives; else it ends with exit code 4")),
       field("trajectory-fit", o.trajectory_fit, trajectory_fit_names(), "FIT",
             "of trajectories: first-frame, se3 or sim3"),
       field("tanksandtemples-tau", o.tanks_and_temples_tau_m, kPositive, "METERS",

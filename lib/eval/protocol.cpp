@@ -8,6 +8,7 @@
 #include "cmap/align/align.hpp"
 #include "cmap/align/tanks_and_temples.hpp"
 #include "cmap/align/trajectory.hpp"
+#include "cmap/align/trust.hpp"
 #include "cmap/core/error.hpp"
 #include "cmap/eval/sensitivity.hpp"
 
@@ -36,6 +37,12 @@ Alignment align_estimate(const PointCloud& reference, const PointCloud& estimate
   how.max_distance_m = options.align_distance_m;
   how.with_scale = options.align_scale;
   return align(estimate, reference, *options.align.registration, how);
+}
+
+/// What is weaker than the largest threshold would decide the scores.
+TrustRule trust_rule(const EvaluationOptions& options) {
+  return {.allow_unconverged = options.allow_unconverged,
+          .largest_error_m = *std::ranges::max_element(options.thresholds_m)};
 }
 
 /// Low values say that the scores may measure the alignment more than the map.
@@ -79,6 +86,7 @@ EvaluatedPair evaluate_by_protocol(PointCloud reference, PointCloud estimate, co
   if (options.align.kind != AlignKind::kNone) {
     timed("scores before", 0.05, [&] { before = evaluate(reference, estimate, plain(options), T_ref_est).metrics; });
     timed("align", 0.1, [&] { alignment = align_estimate(reference, estimate, options, inputs); });
+    require_trust(*alignment, trust_rule(options));
     T_ref_est = alignment->T_dst_src;
   }
   std::optional<SensitivityBand> band;

@@ -40,6 +40,7 @@ struct EvaluationOptions : MetricOptions {
   std::optional<double> align_voxel_m;
   std::optional<double> align_distance_m;
   bool align_scale = false;
+  bool allow_unconverged = false;  ///< score an alignment that is not to be trusted all the same
   TrajectoryFit trajectory_fit = TrajectoryFit::kSim3;
   std::optional<double> tanks_and_temples_tau_m;
   bool sensitivity = false;
