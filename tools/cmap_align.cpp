@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "cmap/align/align.hpp"
@@ -38,8 +39,8 @@ constexpr const char* kExample =
 struct Arguments {
   std::string source, target, initial, times, output, json, cloud;
   cmap::AlignMethod method{AlignKind::kRegistration, &cmap::registration_method("gicp")};
-  cmap::TrajectoryFit fit = cmap::TrajectoryFit::kSim3;
-  double voxel_m = 0.0, max_distance_m = 0.0, tau_m = 0.0, max_gap_s = 0.15;
+  cmap::TrajectoryOptions trajectories;
+  double voxel_m = 0.0, max_distance_m = 0.0, tau_m = 0.0;
   bool scale = false, keep_noise = false, allow_unconverged = false;
   std::vector<std::uint8_t> classes;
   cmap::CommonArguments common;
@@ -75,9 +76,13 @@ void add_method_options(cmap::CommandLine& line, Arguments& a) {
   line.add("--max-distance", a.max_distance_m, "M", "farther pairs are no matches [10 voxels]").between(kLeast, kMost);
   line.add_flag("--scale", a.scale, "estimate the scale too, where the method leaves the choice");
   line.add("--tau", a.tau_m, "M", "threshold of tanksandtemples").between(kLeast, kMost);
-  line.add_choice("--fit", a.fit, cmap::trajectory_fit_names(), "NAME",
+  line.add_choice("--fit", a.trajectories.fit, cmap::trajectory_fit_names(), "NAME",
                   "of trajectories: first-frame, se3, sim3 [sim3]");
-  line.add("--max-gap", a.max_gap_s, "S", "poses farther apart are not interpolated between [0.15]")
+  line.add_choice("--pairing", a.trajectories.pairing, cmap::pose_pairing_names(), "NAME",
+                  "DST's poses interpolated to SRC's times, or evo's nearest ones [interpolated]");
+  line.add("--max-difference", a.trajectories.max_difference_s, "S", "nearest poses farther apart are no pair [0.01]")
+      .between(kLeast, kMost);
+  line.add("--max-gap", a.trajectories.max_gap_s, "S", "poses farther apart are not interpolated between [0.15]")
       .between(kLeast, kMost);
   line.add("--times", a.times, "FILE", "times of poses that have none (KITTI), one number of seconds a line")
       .not_empty();
@@ -98,12 +103,19 @@ void add_options(cmap::CommandLine& line, Arguments& a) {
   cmap::add_common_options(line, a.common, "no table and no warnings");
 }
 
+constexpr std::array<std::string_view, 5> kOfTrajectories{"--fit", "--pairing", "--max-difference", "--max-gap",
+                                                          "--times"};
+
+bool is_of_trajectories(std::string_view option) {
+  return std::ranges::find(kOfTrajectories, option) != kOfTrajectories.end();
+}
+
 /// Whether an option means something for the method; of those that not every method takes, by name.
 bool is_used(std::string_view option, const cmap::AlignMethod& method) {
   const bool of_tanks = method.kind == AlignKind::kTanksAndTemples;
   const bool of_trajectories = method.kind == AlignKind::kTrajectory;
   if (option == "--tau") return of_tanks;
-  if (option == "--fit" || option == "--max-gap" || option == "--times") return of_trajectories;
+  if (is_of_trajectories(option)) return of_trajectories;
   if (option == "--output-cloud" || option == "--keep-noise" || option == "--classes") return !of_trajectories;
   if (option == "--initial") return needs_initial(method);
   if (method.kind != AlignKind::kRegistration) return false;
@@ -114,8 +126,9 @@ bool is_used(std::string_view option, const cmap::AlignMethod& method) {
 
 /// Options that the method would ignore are refused: they do not do what their giver thinks.
 void refuse_unused(const cmap::CommandLine& line, const cmap::AlignMethod& method) {
-  for (const char* option : {"--initial", "--voxel", "--max-distance", "--scale", "--tau", "--fit", "--max-gap",
-                             "--times", "--output-cloud", "--keep-noise", "--classes"}) {
+  for (const char* option :
+       {"--initial", "--voxel", "--max-distance", "--scale", "--tau", "--fit", "--pairing", "--max-difference",
+        "--max-gap", "--times", "--output-cloud", "--keep-noise", "--classes"}) {
     if (!line.has(option) || is_used(option, method)) continue;
     throw cmap::UsageError(
         fmt::format("{} has no meaning for --method {}", option, name_of(method, cmap::align_method_names())));
@@ -136,18 +149,37 @@ void add_warnings(const std::vector<cmap::Warning>& of_input, cmap::Alignment& a
   alignment.warnings.insert(alignment.warnings.begin(), messages.begin(), messages.end());
 }
 
+nlohmann::ordered_json errors_json(const cmap::TrajectoryAlignment& found) {
+  nlohmann::ordered_json json{{"ate", nlohmann::ordered_json::array()}, {"misfit_times_s", found.misfit_times_s}};
+  for (const cmap::TrajectoryError& error : found.errors) {
+    json["ate"].push_back({{"pairing", name_of(error.pairing, cmap::pose_pairing_names())},
+                           {"n_pairs", error.n_pairs},
+                           {"rmse_m", error.rmse_m}});
+  }
+  return json;
+}
+
+std::string error_lines(const cmap::TrajectoryAlignment& found) {
+  std::string lines;
+  for (const cmap::TrajectoryError& error : found.errors) {
+    lines += fmt::format("ATE         {:.10g} m   all {} pairs, {}\n", error.rmse_m, error.n_pairs,
+                         name_of(error.pairing, cmap::pose_pairing_names()));
+  }
+  return lines;
+}
+
 Result align_trajectories(const Arguments& a) {
   const auto [source, target] = cmap::read_trajectory_pair(a.source, a.target, cmap::path_if_given(a.times));
-  Result result;
+  cmap::TrajectoryAlignment found;
   try {
-    result.alignment = cmap::align_trajectories(source.poses, target.poses, a.fit, a.max_gap_s);
+    found = cmap::align_trajectories(with_repeated(source), with_repeated(target), a.trajectories);
   } catch (const cmap::UnsupportedError&) {  // what was said of the inputs may be why
     if (!a.common.quiet) cmap::print_warnings(source.warnings), cmap::print_warnings(target.warnings);
     throw;
   }
-  add_warnings(target.warnings, result.alignment);
-  add_warnings(source.warnings, result.alignment);
-  return result;
+  add_warnings(target.warnings, found);
+  add_warnings(source.warnings, found);
+  return {found, errors_json(found), error_lines(found)};
 }
 
 Result run_tanks_and_temples(const Arguments& a, const cmap::PointCloud& source, const cmap::PointCloud& target,

@@ -19,7 +19,9 @@ Alignment align_by_trajectories(const EvaluationOptions& options, const Protocol
   if (!inputs.reference_trajectory || !inputs.estimate_trajectory) {
     throw UsageError("align: \"trajectory\" needs the trajectories of both maps");
   }
-  return align_trajectories(*inputs.estimate_trajectory, *inputs.reference_trajectory, options.trajectory_fit);
+  TrajectoryOptions how;
+  how.fit = options.trajectory_fit;
+  return align_trajectories(*inputs.estimate_trajectory, *inputs.reference_trajectory, how);
 }
 
 Alignment align_estimate(const PointCloud& reference, const PointCloud& estimate, const EvaluationOptions& options,

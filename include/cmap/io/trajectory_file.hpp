@@ -17,7 +17,11 @@ struct TrajectoryFile {
   bool has_times = true;          ///< false: the file holds none, and time_s is the index of the row
   std::size_t rows = 0;           ///< of poses in the file, those left out too
   std::vector<Warning> warnings;  ///< each names the file
+  Trajectory repeated;            ///< left out, as their times were there: by time, else in the file's order
 };
+
+/// All poses that have a time, with those of repeated times after the first of theirs.
+Trajectory with_repeated(const TrajectoryFile& file);
 
 /// Reads a trajectory in any of these layouts, told apart by what the file holds; one pose a line, separated by blanks,
 /// commas or semicolons, `#` comments:
