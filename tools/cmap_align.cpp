@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "cmap/align/align.hpp"
@@ -12,6 +13,7 @@
 #include "cmap/align/trajectory.hpp"
 #include "cmap/align/trust.hpp"
 #include "cmap/core/execution.hpp"
+#include "cmap/io/number_text.hpp"
 #include "cmap/metrics/metric_options.hpp"
 #include "command_line.hpp"
 #include "files.hpp"
@@ -37,7 +39,7 @@ constexpr const char* kExample =
     "than determined or a little weak, unless --allow-unconverged; 70 internal error.";
 
 struct Arguments {
-  std::string source, target, initial, times, output, json, cloud;
+  std::string source, target, initial, times, time_offset, output, json, cloud;
   cmap::AlignMethod method{AlignKind::kRegistration, &cmap::registration_method("gicp")};
   cmap::TrajectoryOptions trajectories;
   double voxel_m = 0.0, max_distance_m = 0.0, tau_m = 0.0;
@@ -82,6 +84,9 @@ void add_method_options(cmap::CommandLine& line, Arguments& a) {
                   "DST's poses interpolated to SRC's times, or evo's nearest ones [interpolated]");
   line.add("--max-difference", a.trajectories.max_difference_s, "S", "nearest poses farther apart are no pair [0.01]")
       .between(kLeast, kMost);
+  line.add("--time-offset", a.time_offset, "S|estimate",
+           "added to SRC's times; estimate: found by speed and turns, and refused where they do not tell it [0]")
+      .not_empty();
   line.add("--max-gap", a.trajectories.max_gap_s, "S", "poses farther apart are not interpolated between [0.15]")
       .between(kLeast, kMost);
   line.add("--times", a.times, "FILE", "times of poses that have none (KITTI), one number of seconds a line")
@@ -103,8 +108,8 @@ void add_options(cmap::CommandLine& line, Arguments& a) {
   cmap::add_common_options(line, a.common, "no table and no warnings");
 }
 
-constexpr std::array<std::string_view, 5> kOfTrajectories{"--fit", "--pairing", "--max-difference", "--max-gap",
-                                                          "--times"};
+constexpr std::array<std::string_view, 6> kOfTrajectories{"--fit",         "--pairing", "--max-difference",
+                                                          "--time-offset", "--max-gap", "--times"};
 
 bool is_of_trajectories(std::string_view option) {
   return std::ranges::find(kOfTrajectories, option) != kOfTrajectories.end();
@@ -128,7 +133,7 @@ bool is_used(std::string_view option, const cmap::AlignMethod& method) {
 void refuse_unused(const cmap::CommandLine& line, const cmap::AlignMethod& method) {
   for (const char* option :
        {"--initial", "--voxel", "--max-distance", "--scale", "--tau", "--fit", "--pairing", "--max-difference",
-        "--max-gap", "--times", "--output-cloud", "--keep-noise", "--classes"}) {
+        "--time-offset", "--max-gap", "--times", "--output-cloud", "--keep-noise", "--classes"}) {
     if (!line.has(option) || is_used(option, method)) continue;
     throw cmap::UsageError(
         fmt::format("{} has no meaning for --method {}", option, name_of(method, cmap::align_method_names())));
@@ -149,6 +154,24 @@ void add_warnings(const std::vector<cmap::Warning>& of_input, cmap::Alignment& a
   alignment.warnings.insert(alignment.warnings.begin(), messages.begin(), messages.end());
 }
 
+cmap::TrajectoryOptions trajectory_options(const Arguments& a) {
+  cmap::TrajectoryOptions options = a.trajectories;
+  options.find_time_offset = a.time_offset == "estimate";
+  if (a.time_offset.empty() || options.find_time_offset) return options;
+  if (!cmap::parse_number(a.time_offset, options.time_offset_s) || !std::isfinite(options.time_offset_s)) {
+    throw cmap::UsageError(fmt::format("--time-offset: {} is neither a number of seconds nor estimate", a.time_offset));
+  }
+  return options;
+}
+
+nlohmann::ordered_json offset_json(const std::optional<cmap::TimeOffset>& offset) {
+  if (!offset) return nullptr;
+  return {{"offset_s", offset->offset_s},
+          {"standard_error_s", offset->standard_error_s},
+          {"rmse_m", offset->rmse_m},
+          {"n_pairs", offset->n_pairs}};
+}
+
 nlohmann::ordered_json errors_json(const cmap::TrajectoryAlignment& found) {
   nlohmann::ordered_json json{{"ate", nlohmann::ordered_json::array()}, {"misfit_times_s", found.misfit_times_s}};
   for (const cmap::TrajectoryError& error : found.errors) {
@@ -156,6 +179,8 @@ nlohmann::ordered_json errors_json(const cmap::TrajectoryAlignment& found) {
                            {"n_pairs", error.n_pairs},
                            {"rmse_m", error.rmse_m}});
   }
+  json["time_offset_s"] = found.time_offset_s;
+  json["found_time_offset"] = offset_json(found.found_time_offset);
   return json;
 }
 
@@ -165,6 +190,11 @@ std::string error_lines(const cmap::TrajectoryAlignment& found) {
     lines += fmt::format("ATE         {:.10g} m   all {} pairs, {}\n", error.rmse_m, error.n_pairs,
                          name_of(error.pairing, cmap::pose_pairing_names()));
   }
+  if (found.time_offset_s == 0.0) return lines;
+  lines += fmt::format("time offset {:.6f} s   added to SRC's times", found.time_offset_s);
+  const auto& offset = found.found_time_offset;
+  const bool is_estimate = offset && offset->offset_s == found.time_offset_s;
+  lines += is_estimate ? fmt::format(", standard error {:.2g} s\n", offset->standard_error_s) : "\n";
   return lines;
 }
 
@@ -172,7 +202,7 @@ Result align_trajectories(const Arguments& a) {
   const auto [source, target] = cmap::read_trajectory_pair(a.source, a.target, cmap::path_if_given(a.times));
   cmap::TrajectoryAlignment found;
   try {
-    found = cmap::align_trajectories(with_repeated(source), with_repeated(target), a.trajectories);
+    found = cmap::align_trajectories(with_repeated(source), with_repeated(target), trajectory_options(a));
   } catch (const cmap::UnsupportedError&) {  // what was said of the inputs may be why
     if (!a.common.quiet) cmap::print_warnings(source.warnings), cmap::print_warnings(target.warnings);
     throw;

@@ -9,6 +9,7 @@
 
 #include "cmap/core/error.hpp"
 #include "direction_text.hpp"
+#include "residual_correlation.hpp"
 #include "robust_centers.hpp"
 
 namespace cmap {
@@ -124,20 +125,6 @@ std::string what_would_make_them_alike(const PathMeasures& m, TrajectoryFit fit)
   return "are they of one body, with one clock? --time-offset estimate looks for another clock";
 }
 
-/// How many of the pairs count: residuals that follow each other are alike.
-double independent_pairs(std::span<const PosePair> pairs, const Similarity& T) {
-  double sum_sq = 0.0, sum_next = 0.0;
-  Eigen::Vector3d before = Eigen::Vector3d::Zero();
-  for (const PosePair& pair : pairs) {
-    const Eigen::Vector3d r = T * pair.source.position - pair.target.position;
-    sum_sq += r.squaredNorm();
-    sum_next += r.dot(before);
-    before = r;
-  }
-  const double correlation = sum_sq > 0.0 ? std::clamp(sum_next / sum_sq, 0.0, 1.0) : 0.0;
-  return std::max(1.0, static_cast<double>(pairs.size()) * (1.0 - correlation) / (1.0 + correlation));
-}
-
 /// The residual without what the fit itself has taken: 7 of its numbers, or 6.
 double residual_m(const PathMeasures& m, bool with_scale) {
   const double numbers = 3.0 * m.n;
@@ -158,7 +145,7 @@ void judge_turn(std::span<const PosePair> pairs, const Similarity& T, const Path
     return;
   }
   judgment.verdict = Verdict::kWeak;
-  const double error_rad = residual_m / std::sqrt(3.0 * independent_pairs(pairs, T)) / m.across_m;
+  const double error_rad = residual_m / std::sqrt(3.0 * m.n / alike_in_a_row(pairs, T)) / m.across_m;
   judgment.weak.push_back({"rotation about " + direction, error_rad * m.target_spread_m});
 }
 

@@ -6,6 +6,9 @@
 namespace cmap {
 namespace {
 
+/// Stamps are written to the microsecond; an offset that was found has rounding of its own.
+constexpr double kSameTime_s = 1e-6;
+
 /// Index of the pose nearest in time, as pair_nearest() has it; none farther than max_difference_s.
 std::optional<std::size_t> nearest_in_time(const Trajectory& trajectory, double time_s, double max_difference_s) {
   if (trajectory.empty()) return std::nullopt;
@@ -39,7 +42,11 @@ std::vector<PosePair> pair_in_time(const Trajectory& source, const Trajectory& t
   const Trajectory there = first_of_each_time(target);
   std::vector<PosePair> pairs;
   for (const StampedPose& pose : first_of_each_time(source)) {
-    if (const auto found = pose_at(there, pose.time_s, max_gap_s)) pairs.push_back({pose, *found});
+    if (const auto found = pose_at(there, pose.time_s, max_gap_s)) {
+      pairs.push_back({pose, *found});
+    } else if (const auto same = nearest_in_time(there, pose.time_s, kSameTime_s)) {
+      pairs.push_back({pose, there[*same]});
+    }
   }
   return pairs;
 }

@@ -8,7 +8,7 @@
 
 namespace cmap {
 
-/// Throws UnsupportedError where there are no pairs, saying why: no poses, times apart or in other units, or poses
+/// Throws UnsupportedError where there are no pairs, saying why: times apart or in other units, or poses
 /// farther apart than the pairing takes, naming the option that takes more.
 void require_pairs(const Trajectory& source, const Trajectory& target, std::size_t n_pairs,
                    const TrajectoryOptions& options);

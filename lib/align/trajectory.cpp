@@ -120,6 +120,45 @@ std::vector<PosePair> fit_pairs(const std::vector<PosePair>& pairs, TrajectoryFi
   return fitting;
 }
 
+/// With the times as they are.
+TrajectoryAlignment align_at(const Trajectory& source, const Trajectory& target, const TrajectoryOptions& options) {
+  const std::vector<PosePair> pairs = paired(source, target, options.pairing, options);
+  require_pairs(source, target, pairs.size(), options);
+  TrajectoryAlignment result;
+  Similarity T;
+  const std::vector<PosePair> fitting = fit_pairs(pairs, options.fit, T, result);
+  result.method = kFitNames[static_cast<std::size_t>(options.fit)];
+  result.T_dst_src = T.matrix();
+  result.scale = T.scale;
+  result.n_source = n_that_may_pair(source, options.pairing);
+  result.n_target = target.size();
+  result.n_matches = fitting.size();
+  result.overlap = std::min(1.0, static_cast<double>(pairs.size()) / static_cast<double>(result.n_source));
+  result.rmse_m = rmse_m(fitting, T);
+  result.converged = true;
+  result.errors.push_back(trajectory_error(pairs, options.pairing, options.fit));
+  if (const auto other = other_error(source, target, options)) result.errors.push_back(*other);
+  if (options.pairing == PosePairing::kInterpolated) warn_of_gaps(source, target, options.max_gap_s, result.warnings);
+  result.judgment = judge_paths(fitting, T, options.fit);
+  return result;
+}
+
+/// An offset that was found and not asked for is told, not taken.
+void tell_other_offset(const TimeOffsetSearch& search, TrajectoryAlignment& result) {
+  constexpr double kGain = 0.7, kErrors = 3.0, kShortest_s = 1e-3;
+  if (!search.found || result.judgment.verdict == Verdict::kMirrored) return;
+  const TimeOffset& offset = *search.found;
+  const double apart_s = std::abs(offset.offset_s - result.time_offset_s);
+  if (apart_s < std::max(kErrors * offset.standard_error_s, kShortest_s)) return;
+  if (!(offset.rmse_m < kGain * result.rmse_m)) return;
+  result.found_time_offset = offset;
+  const std::string advice = fmt::format("--time-offset {:.4f} would leave an RMSE of {:.3g} m in place of {:.3g} m",
+                                         offset.offset_s, offset.rmse_m, result.rmse_m);
+  result.warnings.push_back(fmt::format("the clocks differ: {} (standard error {:.2g} s); it is not applied", advice,
+                                        offset.standard_error_s));
+  if (!is_trusted(result.judgment.verdict)) result.judgment.help = "the clocks differ: " + advice;
+}
+
 }  // namespace
 
 Similarity fit_centers(std::span<const PosePair> pairs, const ScaleModel& model) {
@@ -140,25 +179,19 @@ const EnumNames<PosePairing>& pose_pairing_names() {
 
 TrajectoryAlignment align_trajectories(const Trajectory& source, const Trajectory& target,
                                        const TrajectoryOptions& options) {
-  const std::vector<PosePair> pairs = paired(source, target, options.pairing, options);
-  require_pairs(source, target, pairs.size(), options);
-  TrajectoryAlignment result;
-  Similarity T;
-  const std::vector<PosePair> fitting = fit_pairs(pairs, options.fit, T, result);
-  result.method = kFitNames[static_cast<std::size_t>(options.fit)];
-  result.T_dst_src = T.matrix();
-  result.scale = T.scale;
-  result.n_source = n_that_may_pair(source, options.pairing);
-  result.n_target = target.size();
-  result.n_matches = fitting.size();
-  result.overlap = std::min(1.0, static_cast<double>(pairs.size()) / static_cast<double>(result.n_source));
-  result.rmse_m = rmse_m(fitting, T);
-  result.converged = true;
-  result.errors.push_back(trajectory_error(pairs, options.pairing, options.fit));
-  if (const auto other = other_error(source, target, options)) result.errors.push_back(*other);
-  if (options.pairing == PosePairing::kInterpolated) warn_of_gaps(source, target, options.max_gap_s, result.warnings);
-  result.judgment = judge_paths(fitting, T, options.fit);
-  return result;
+  if (source.empty() || target.empty()) throw UnsupportedError("a trajectory without poses cannot be aligned");
+  if (!options.find_time_offset) {
+    TrajectoryAlignment found = align_at(shifted_in_time(source, options.time_offset_s), target, options);
+    found.time_offset_s = options.time_offset_s;
+    tell_other_offset(find_time_offset(source, target), found);
+    return found;
+  }
+  const TimeOffsetSearch search = find_time_offset(source, target);
+  if (!search.found) throw UnsupportedError("the offset between the clocks is not determined: " + search.reason);
+  TrajectoryAlignment found = align_at(shifted_in_time(source, search.found->offset_s), target, options);
+  found.time_offset_s = search.found->offset_s;
+  found.found_time_offset = search.found;
+  return found;
 }
 
 }  // namespace cmap

@@ -18,7 +18,8 @@ struct PosePair {
   StampedPose source, target;
 };
 
-/// The source's own poses, and the target interpolated there. Of poses at one time the first counts.
+/// The source's own poses, and the target interpolated there, or its pose within a microsecond. Of poses at one time the
+/// first counts.
 std::vector<PosePair> pair_in_time(const Trajectory& source, const Trajectory& target, double max_gap_s = 0.15);
 
 /// As evo does (1.38, "nearest_time"): every pose of the trajectory with fewer poses, the source where both have as
