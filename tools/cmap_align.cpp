@@ -44,6 +44,7 @@ struct Arguments {
   cmap::TrajectoryOptions trajectories;
   double voxel_m = 0.0, max_distance_m = 0.0, tau_m = 0.0;
   bool scale = false, keep_noise = false, allow_unconverged = false;
+  bool recognized = false;  ///< as trajectories, by what the files hold
   std::vector<std::uint8_t> classes;
   cmap::CommonArguments common;
 
@@ -96,7 +97,8 @@ void add_method_options(cmap::CommandLine& line, Arguments& a) {
 void add_options(cmap::CommandLine& line, Arguments& a) {
   line.add("SRC", a.source, "FILE", "map or trajectory to move").required();
   line.add("DST", a.target, "FILE", "map or trajectory that stays").required();
-  line.add_choice("--method", a.method, method_names(), "NAME", "one of these [gicp]");
+  line.add_choice("--method", a.method, method_names(), "NAME",
+                  "one of these [gicp; of two files of poses: trajectory]");
   line.add("-o,--output", a.output, "FILE", "transform to write: 4x4 as text").not_empty();
   line.add("--output-cloud", a.cloud, "FILE.ply", "SRC as moved onto DST, to write").not_empty();
   line.add("--json", a.json, "FILE", "everything about the result, to write").not_empty();
@@ -209,6 +211,10 @@ Result align_trajectories(const Arguments& a) {
   }
   add_warnings(target.warnings, found);
   add_warnings(source.warnings, found);
+  if (a.recognized) {
+    found.warnings.insert(found.warnings.begin(),
+                          "both files hold poses: they are aligned as --method trajectory does");
+  }
   return {found, errors_json(found), error_lines(found)};
 }
 
@@ -297,8 +303,16 @@ void deliver(const Arguments& a, const Result& result) {
   files.commit();
 }
 
-cmap::ExitCode run(const cmap::CommandLine& line, const Arguments& a) {
+/// Files of poses are no clouds: where no method is said, they are aligned as what they are.
+void recognize_trajectories(const cmap::CommandLine& line, Arguments& a) {
+  if (line.has("--method") || !cmap::holds_poses(a.source) || !cmap::holds_poses(a.target)) return;
+  a.method = {AlignKind::kTrajectory};
+  a.recognized = true;
+}
+
+cmap::ExitCode run(const cmap::CommandLine& line, Arguments& a) {
   const cmap::ExecutionScope scope({.threads = a.common.threads});
+  recognize_trajectories(line, a);
   refuse_unused(line, a.method);
   cmap::refuse_overwriting({a.source, a.target, a.initial, a.times}, a.outputs());
   for (const std::string& output : a.outputs()) cmap::require_writable(output);

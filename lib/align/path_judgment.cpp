@@ -119,7 +119,9 @@ std::string why_not_alike(const PathMeasures& m) {
 }
 
 std::string what_would_make_them_alike(const PathMeasures& m, TrajectoryFit fit) {
-  if (fit != TrajectoryFit::kSim3 && m.free_rmse_m < 0.5 * m.rmse_m) {
+  const bool another_scale =
+      m.free_rmse_m < 0.5 * m.rmse_m && m.free_rmse_m <= kLargestShareOfSpread * m.target_spread_m;
+  if (fit != TrajectoryFit::kSim3 && another_scale && m.explained_motion >= kLeastExplainedMotion) {
     return fmt::format("--fit sim3 finds a scale of {:.6g} and an RMSE of {:.3g} m", m.free_scale, m.free_rmse_m);
   }
   return "are they of one body, with one clock? --time-offset estimate looks for another clock";

@@ -39,6 +39,11 @@ Trajectory with_repeated(const TrajectoryFile& file);
 /// else. Thread-safe.
 TrajectoryFile read_trajectory(const std::filesystem::path& path);
 
+/// Whether a file on disk holds a trajectory and no point cloud, by its first rows: columns named as a time, a position
+/// and a quaternion; rows of TUM's layout with times that rise and unit quaternions that are no normals; matrices.
+/// Never throws: what cannot be read is none.
+bool holds_poses(const std::filesystem::path& path);
+
 /// Two trajectories to be paired by time. `times`, a file with one time a line for each pose, are those of whichever
 /// holds none. Where neither does and none are given, both must have as many rows: they are paired row by row, with a
 /// warning in the first. Throws as read_trajectory(), InputError for another number of times than poses or where times
