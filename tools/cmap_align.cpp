@@ -11,6 +11,7 @@
 #include "cmap/align/align_method.hpp"
 #include "cmap/align/tanks_and_temples.hpp"
 #include "cmap/align/trajectory.hpp"
+#include "cmap/align/trajectory_text.hpp"
 #include "cmap/align/trust.hpp"
 #include "cmap/core/execution.hpp"
 #include "cmap/io/number_text.hpp"
@@ -81,7 +82,7 @@ void add_method_options(cmap::CommandLine& line, Arguments& a) {
   line.add("--tau", a.tau_m, "M", "threshold of tanksandtemples").between(kLeast, kMost);
   line.add_choice("--fit", a.trajectories.fit, cmap::trajectory_fit_names(), "NAME",
                   "of trajectories: first-frame, se3, sim3 [sim3]");
-  line.add_choice("--pairing", a.trajectories.pairing, cmap::pose_pairing_names(), "NAME",
+  line.add_choice("--pairing", a.trajectories.pairing, cmap::time_pairing_names(), "NAME",
                   "DST's poses interpolated to SRC's times, or evo's nearest ones [interpolated]");
   line.add("--max-difference", a.trajectories.max_difference_s, "S", "nearest poses farther apart are no pair [0.01]")
       .between(kLeast, kMost);
@@ -166,40 +167,6 @@ cmap::TrajectoryOptions trajectory_options(const Arguments& a) {
   return options;
 }
 
-nlohmann::ordered_json offset_json(const std::optional<cmap::TimeOffset>& offset) {
-  if (!offset) return nullptr;
-  return {{"offset_s", offset->offset_s},
-          {"standard_error_s", offset->standard_error_s},
-          {"rmse_m", offset->rmse_m},
-          {"n_pairs", offset->n_pairs}};
-}
-
-nlohmann::ordered_json errors_json(const cmap::TrajectoryAlignment& found) {
-  nlohmann::ordered_json json{{"ate", nlohmann::ordered_json::array()}, {"misfit_times_s", found.misfit_times_s}};
-  for (const cmap::TrajectoryError& error : found.errors) {
-    json["ate"].push_back({{"pairing", name_of(error.pairing, cmap::pose_pairing_names())},
-                           {"n_pairs", error.n_pairs},
-                           {"rmse_m", error.rmse_m}});
-  }
-  json["time_offset_s"] = found.time_offset_s;
-  json["found_time_offset"] = offset_json(found.found_time_offset);
-  return json;
-}
-
-std::string error_lines(const cmap::TrajectoryAlignment& found) {
-  std::string lines;
-  for (const cmap::TrajectoryError& error : found.errors) {
-    lines += fmt::format("ATE         {:.10g} m   all {} pairs, {}\n", error.rmse_m, error.n_pairs,
-                         name_of(error.pairing, cmap::pose_pairing_names()));
-  }
-  if (found.time_offset_s == 0.0) return lines;
-  lines += fmt::format("time offset {:.6f} s   added to SRC's times", found.time_offset_s);
-  const auto& offset = found.found_time_offset;
-  const bool is_estimate = offset && offset->offset_s == found.time_offset_s;
-  lines += is_estimate ? fmt::format(", standard error {:.2g} s\n", offset->standard_error_s) : "\n";
-  return lines;
-}
-
 Result align_trajectories(const Arguments& a) {
   const auto [source, target] = cmap::read_trajectory_pair(a.source, a.target, cmap::path_if_given(a.times));
   cmap::TrajectoryAlignment found;
@@ -215,7 +182,7 @@ Result align_trajectories(const Arguments& a) {
     found.warnings.insert(found.warnings.begin(),
                           "both files hold poses: they are aligned as --method trajectory does");
   }
-  return {found, errors_json(found), error_lines(found)};
+  return {found, trajectory_json(found), trajectory_lines(found)};
 }
 
 Result run_tanks_and_temples(const Arguments& a, const cmap::PointCloud& source, const cmap::PointCloud& target,

@@ -63,7 +63,7 @@ void require_pairs(const Trajectory& source, const Trajectory& target, std::size
   if (n_pairs > 0) return;
   const bool share_time =
       source.front().time_s <= target.back().time_s && target.front().time_s <= source.back().time_s;
-  if (share_time && options.pairing == PosePairing::kNearest) {
+  if (share_time && options.pairing == TimePairing::kNearest) {
     throw UnsupportedError(
         fmt::format("no two poses are within {:g} s of each other: {}; --max-difference takes larger ones, --pairing "
                     "interpolated the poses between",

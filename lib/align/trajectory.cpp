@@ -24,15 +24,15 @@ ScaleModel scale_model(TrajectoryFit fit) {
   return fit == TrajectoryFit::kSim3 ? ScaleModel::free() : ScaleModel::rigid();
 }
 
-std::vector<PosePair> paired(const Trajectory& source, const Trajectory& target, PosePairing pairing,
+std::vector<PosePair> paired(const Trajectory& source, const Trajectory& target, TimePairing pairing,
                              const TrajectoryOptions& options) {
-  return pairing == PosePairing::kNearest ? pair_nearest(source, target, options.max_difference_s)
+  return pairing == TimePairing::kNearest ? pair_nearest(source, target, options.max_difference_s)
                                           : pair_in_time(source, target, options.max_gap_s);
 }
 
 /// Interpolation takes one pose a time.
-std::size_t n_that_may_pair(const Trajectory& source, PosePairing pairing) {
-  return pairing == PosePairing::kNearest ? source.size() : first_of_each_time(source).size();
+std::size_t n_that_may_pair(const Trajectory& source, TimePairing pairing) {
+  return pairing == TimePairing::kNearest ? source.size() : first_of_each_time(source).size();
 }
 
 Similarity first_frame(const PosePair& pair) {
@@ -48,7 +48,7 @@ double rmse_m(std::span<const PosePair> pairs, const Similarity& T) {
   return std::sqrt(sum_sq / static_cast<double>(pairs.size()));
 }
 
-TrajectoryError trajectory_error(std::span<const PosePair> pairs, PosePairing pairing, TrajectoryFit fit) {
+TrajectoryError trajectory_error(std::span<const PosePair> pairs, TimePairing pairing, TrajectoryFit fit) {
   const Similarity T =
       fit == TrajectoryFit::kFirstFrame ? first_frame(pairs.front()) : fit_centers(pairs, scale_model(fit));
   return {pairing, pairs.size(), rmse_m(pairs, T)};
@@ -57,8 +57,8 @@ TrajectoryError trajectory_error(std::span<const PosePair> pairs, PosePairing pa
 /// By the other pairing than the one that was asked for.
 std::optional<TrajectoryError> other_error(const Trajectory& source, const Trajectory& target,
                                            const TrajectoryOptions& options) {
-  const PosePairing other =
-      options.pairing == PosePairing::kNearest ? PosePairing::kInterpolated : PosePairing::kNearest;
+  const TimePairing other =
+      options.pairing == TimePairing::kNearest ? TimePairing::kInterpolated : TimePairing::kNearest;
   const std::vector<PosePair> pairs = paired(source, target, other, options);
   if (pairs.empty()) return std::nullopt;
   try {
@@ -138,7 +138,7 @@ TrajectoryAlignment align_at(const Trajectory& source, const Trajectory& target,
   result.converged = true;
   result.errors.push_back(trajectory_error(pairs, options.pairing, options.fit));
   if (const auto other = other_error(source, target, options)) result.errors.push_back(*other);
-  if (options.pairing == PosePairing::kInterpolated) warn_of_gaps(source, target, options.max_gap_s, result.warnings);
+  if (options.pairing == TimePairing::kInterpolated) warn_of_gaps(source, target, options.max_gap_s, result.warnings);
   result.judgment = judge_paths(fitting, T, options.fit);
   return result;
 }
@@ -171,9 +171,9 @@ const EnumNames<TrajectoryFit>& trajectory_fit_names() {
   return names;
 }
 
-const EnumNames<PosePairing>& pose_pairing_names() {
-  static const EnumNames<PosePairing> names{{PosePairing::kInterpolated, "interpolated"},
-                                            {PosePairing::kNearest, "nearest"}};
+const EnumNames<TimePairing>& time_pairing_names() {
+  static const EnumNames<TimePairing> names{{TimePairing::kInterpolated, "interpolated"},
+                                            {TimePairing::kNearest, "nearest"}};
   return names;
 }
 

@@ -86,7 +86,7 @@ OptionFields alignment_fields(EvaluationOptions& o) {
                    "score also what an alignment that is not to be trusted gives; else it ends with exit code 4")),
       field("trajectory-fit", o.trajectory_fit, trajectory_fit_names(), "FIT",
             "of trajectories: first-frame, se3 or sim3"),
-      field("trajectory-pairing", o.trajectory_pairing, pose_pairing_names(), "PAIRING",
+      field("trajectory-pairing", o.trajectory_pairing, time_pairing_names(), "PAIRING",
             "the reference's poses interpolated, or the nearest within 10 ms"),
       field("trajectory-max-gap", o.trajectory_max_gap_s, kPositive, "SECONDS",
             "poses farther apart are not interpolated between"),

@@ -1,7 +1,10 @@
 #include "cmap/align/trajectory.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include "align/align_testing.hpp"
 #include "align/trajectories.hpp"
+#include "cmap/align/trajectory_text.hpp"
 
 namespace cmap {
 namespace trajectory_test {
@@ -84,7 +87,7 @@ TEST(AlignTrajectories, GapsAreNamedWithTheOptionThatTakesThem) {
   const Trajectory sparse = curve(0.0, 20.0, 1.0), shifted = curve(0.05, 20.0);
   EXPECT_THAT(refusal(shifted, sparse), HasSubstr("1 to 1 s apart; --max-gap takes longer gaps"));
   TrajectoryOptions nearest;
-  nearest.pairing = PosePairing::kNearest;
+  nearest.pairing = TimePairing::kNearest;
   EXPECT_THAT(refusal(shifted, sparse, nearest), HasSubstr("--max-difference takes larger ones"));
   nearest.max_difference_s = 0.06;
   EXPECT_EQ(align_trajectories(shifted, sparse, nearest).n_matches, 21U) << "each of the sparse ones";
@@ -139,16 +142,34 @@ TEST(AlignTrajectories, PlainNoiseAndRestsAreNoMisfits) {
 TEST(AlignTrajectories, BothPairingsAreTold) {
   const Trajectory source = curve(0.0, 20.0), target = curve(0.004, 20.0);
   TrajectoryOptions nearest;
-  nearest.pairing = PosePairing::kNearest;
+  nearest.pairing = TimePairing::kNearest;
   const TrajectoryAlignment found = aligned(source, target, TrajectoryFit::kSim3);
   const TrajectoryAlignment other = align_trajectories(source, target, nearest);
   ASSERT_EQ(found.errors.size(), 2U);
   ASSERT_EQ(other.errors.size(), 2U);
-  EXPECT_EQ(found.errors[0].pairing, PosePairing::kInterpolated);
+  EXPECT_EQ(found.errors[0].pairing, TimePairing::kInterpolated);
   for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(found.errors[i].rmse_m, other.errors[1 - i].rmse_m);
   // At 3 m/s, 4 ms are 12 mm along the path, of which the fit takes what is alike: they turn with it.
   EXPECT_GT(found.errors[1].rmse_m, 2.0 * found.errors[0].rmse_m);
   EXPECT_EQ(other.rmse_m, other.errors[0].rmse_m);
+}
+
+TEST(TrajectoryText, HoldsBothErrorsAndTheOffset) {
+  TrajectoryAlignment found = aligned(curve(0.0, 20.0), curve(0.004, 20.0), TrajectoryFit::kSim3);
+  found.misfit_times_s = {1.5};
+  auto json = trajectory_json(found);
+  ASSERT_EQ(json.at("ate").size(), 2U);
+  EXPECT_EQ(json.at("ate").at(1).at("pairing"), "nearest");
+  EXPECT_EQ(json.at("ate").at(1).at("rmse_m"), found.errors[1].rmse_m);
+  EXPECT_EQ(json.at("misfit_times_s").at(0), 1.5);
+  EXPECT_EQ(json.at("time_offset_s"), 0.0);
+  EXPECT_TRUE(json.at("found_time_offset").is_null());
+  EXPECT_EQ(trajectory_lines(found).find("time offset"), std::string::npos);
+  found.time_offset_s = -0.5;
+  EXPECT_THAT(trajectory_lines(found), HasSubstr("\ntime offset -0.500000 s   added to SRC's times\n"));
+  found.found_time_offset = TimeOffset{-0.5, 0.25, 0.1, 7};
+  EXPECT_THAT(trajectory_lines(found), HasSubstr("SRC's times, standard error 0.25 s\n"));
+  EXPECT_EQ(trajectory_json(found).at("found_time_offset").at("n_pairs"), 7);
 }
 
 TEST(AlignTrajectories, TheSameHoweverOftenItIsAsked) {

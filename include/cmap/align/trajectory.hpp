@@ -28,7 +28,7 @@ Similarity fit_centers(std::span<const PosePair> pairs, const ScaleModel& model)
 
 struct TrajectoryOptions {
   TrajectoryFit fit = TrajectoryFit::kSim3;
-  PosePairing pairing = PosePairing::kInterpolated;
+  TimePairing pairing = TimePairing::kInterpolated;
   double max_gap_s = 0.15;         ///< kInterpolated: poses farther apart are not interpolated between
   double max_difference_s = 0.01;  ///< kNearest: poses farther apart are no pair
   double time_offset_s = 0.0;      ///< added to the source's times
@@ -37,7 +37,7 @@ struct TrajectoryOptions {
 
 /// The absolute trajectory error: RMSE of the positions of all pairs after the plain fit to all of them, as evo has it.
 struct TrajectoryError {
-  PosePairing pairing = PosePairing::kInterpolated;
+  TimePairing pairing = TimePairing::kInterpolated;
   std::size_t n_pairs = 0;
   double rmse_m = 0.0;
 };

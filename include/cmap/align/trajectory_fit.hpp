@@ -15,9 +15,9 @@ enum class TrajectoryFit {
 const EnumNames<TrajectoryFit>& trajectory_fit_names();
 
 /// Which poses of two trajectories belong together; see pose_pairs.hpp.
-enum class PosePairing { kInterpolated, kNearest };
+enum class TimePairing { kInterpolated, kNearest };
 
 /// "interpolated", "nearest".
-const EnumNames<PosePairing>& pose_pairing_names();
+const EnumNames<TimePairing>& time_pairing_names();
 
 }  // namespace cmap
