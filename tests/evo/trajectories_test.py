@@ -55,12 +55,12 @@ def jittered(start, stop, step, jitter, seed):
 
 
 def made_pairs(folder):
-    """(name, estimate, truth) of paths like published ones."""
-    def pair(name, est_times, est, true_times, true, write=write_tum):
+    """(name, estimate, truth, offset of their clocks) of paths like published ones."""
+    def pair(name, est_times, est, true_times, true, write=write_tum, offset=0.0):
         a, b = folder / (name + "_est.txt"), folder / (name + "_true" + (".csv" if write is write_euroc else ".txt"))
         write_tum(a, est_times, est)
         write(b, true_times, true)
-        return name, a, b
+        return name, a, b, offset
 
     epoch = 1311868163.0
     dense, sparse = epoch + jittered(0, 60, 0.01, 0.002, 1), epoch + jittered(5, 50, 1 / 30, 0.002, 2)
@@ -76,6 +76,7 @@ def made_pairs(folder):
     slow, fast = epoch + jittered(0, 60, 1.0, 0.004, 4), epoch + jittered(0, 60, 0.1, 0.004, 5)
     yield pair("1_against_10_hz", slow, estimate_of(slow - epoch, 1.0, 0.02, 6), fast, path_at(fast - epoch))
     yield pair("10_against_1_hz", fast, estimate_of(fast - epoch, 1.0, 0.02, 7), slow, path_at(slow - epoch))
+    yield pair("other_clock", sparse - 0.3, estimate, dense, true, offset=0.3)
     yield pair("as_many", fast, estimate_of(fast - epoch, 0.9, 0.02, 8), fast + 0.003, path_at(fast - epoch))
 
 
@@ -84,29 +85,30 @@ def found_pairs():
     if data:
         viral = Path(data) / "fastlivo2_ntu_viral"
         for name in ("eee", "nya", "sbs"):
-            yield name, viral / f"{name}_01_prism.txt", viral / f"{name}_01_gt.txt"
+            yield name, viral / f"{name}_01_prism.txt", viral / f"{name}_01_gt.txt", 0.0
     if theirs:
         folder = Path(theirs)
         for estimate, truth in (("fr2_desk_ORB", "fr2_desk_groundtruth"), ("fr2_desk_ORB_kf_mono", "fr2_desk_groundtruth"),
                                 ("freiburg1_xyz-rgbdslam", "freiburg1_xyz-groundtruth"),
                                 ("freiburg1_xyz-ORB_kf_mono", "freiburg1_xyz-groundtruth")):
-            yield estimate, folder / (estimate + ".txt"), folder / (truth + ".txt")
-        yield "V102", folder / "V102.txt", folder / "V102_groundtruth.csv"
+            yield estimate, folder / (estimate + ".txt"), folder / (truth + ".txt"), 0.0
+        yield "V102", folder / "V102.txt", folder / "V102_groundtruth.csv", 0.0
 
 
-def by_evo(estimate_path, truth_path, with_scale):
+def by_evo(estimate_path, truth_path, offset, with_scale):
     read = file_interface.read_euroc_csv_trajectory if truth_path.suffix == ".csv" else file_interface.read_tum_trajectory_file
-    truth, estimate = sync.associate_trajectories(read(truth_path), file_interface.read_tum_trajectory_file(estimate_path))
+    estimate = file_interface.read_tum_trajectory_file(estimate_path)
+    truth, estimate = sync.associate_trajectories(read(truth_path), estimate, offset_2=offset)
     estimate.align(truth, correct_scale=with_scale)
     error = metrics.APE(metrics.PoseRelation.translation_part)
     error.process_data((truth, estimate))
     return error.get_statistic(metrics.StatisticsType.rmse), truth.num_poses
 
 
-def by_cmap(program, estimate_path, truth_path, with_scale, folder):
+def by_cmap(program, estimate_path, truth_path, offset, with_scale, folder):
     output = folder / "result.json"
     subprocess.run([program, estimate_path, truth_path, "--method", "trajectory", "--fit", "sim3" if with_scale else "se3",
-                    "--pairing", "nearest", "--allow-unconverged", "--json", output, "--quiet"], check=True)
+                    "--pairing", "nearest", "--time-offset", repr(offset), "--allow-unconverged", "--json", output, "--quiet"], check=True)
     errors = {row["pairing"]: row for row in json.loads(output.read_text())["ate"]}
     return errors["nearest"]["rmse_m"], errors["nearest"]["n_pairs"], errors.get("interpolated", {}).get("rmse_m")
 
@@ -116,10 +118,10 @@ def main():
     failed, n = 0, 0
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for title, estimate, truth in [*made_pairs(folder), *found_pairs()]:
+        for title, estimate, truth, offset in [*made_pairs(folder), *found_pairs()]:
             for with_scale in (False, True):
-                theirs, n_theirs = by_evo(estimate, truth, with_scale)
-                ours, n_ours, interpolated = by_cmap(program, estimate, truth, with_scale, folder)
+                theirs, n_theirs = by_evo(estimate, truth, offset, with_scale)
+                ours, n_ours, interpolated = by_cmap(program, estimate, truth, offset, with_scale, folder)
                 agrees = n_ours == n_theirs and abs(ours - theirs) <= ABSOLUTE_M + RELATIVE * theirs
                 n += 1
                 failed += not agrees
