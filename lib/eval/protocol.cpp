@@ -8,6 +8,7 @@
 #include "cmap/align/align.hpp"
 #include "cmap/align/tanks_and_temples.hpp"
 #include "cmap/align/trajectory.hpp"
+#include "cmap/align/trust.hpp"
 #include "cmap/core/error.hpp"
 #include "cmap/eval/sensitivity.hpp"
 
@@ -18,7 +19,12 @@ Alignment align_by_trajectories(const EvaluationOptions& options, const Protocol
   if (!inputs.reference_trajectory || !inputs.estimate_trajectory) {
     throw UsageError("align: \"trajectory\" needs the trajectories of both maps");
   }
-  return align_trajectories(*inputs.estimate_trajectory, *inputs.reference_trajectory, options.trajectory_fit);
+  TrajectoryOptions how;
+  how.fit = options.trajectory_fit;
+  how.pairing = options.trajectory_pairing;
+  how.max_gap_s = options.trajectory_max_gap_s;
+  how.time_offset_s = options.trajectory_time_offset_s.value_or(0.0);
+  return align_trajectories(*inputs.estimate_trajectory, *inputs.reference_trajectory, how);
 }
 
 Alignment align_estimate(const PointCloud& reference, const PointCloud& estimate, const EvaluationOptions& options,
@@ -36,6 +42,12 @@ Alignment align_estimate(const PointCloud& reference, const PointCloud& estimate
   how.max_distance_m = options.align_distance_m;
   how.with_scale = options.align_scale;
   return align(estimate, reference, *options.align.registration, how);
+}
+
+/// What is weaker than the largest threshold would decide the scores.
+TrustRule trust_rule(const EvaluationOptions& options) {
+  return {.allow_unconverged = options.allow_unconverged,
+          .largest_error_m = *std::ranges::max_element(options.thresholds_m)};
 }
 
 /// Low values say that the scores may measure the alignment more than the map.
@@ -79,6 +91,7 @@ EvaluatedPair evaluate_by_protocol(PointCloud reference, PointCloud estimate, co
   if (options.align.kind != AlignKind::kNone) {
     timed("scores before", 0.05, [&] { before = evaluate(reference, estimate, plain(options), T_ref_est).metrics; });
     timed("align", 0.1, [&] { alignment = align_estimate(reference, estimate, options, inputs); });
+    require_trust(*alignment, trust_rule(options));
     T_ref_est = alignment->T_dst_src;
   }
   std::optional<SensitivityBand> band;

@@ -46,9 +46,11 @@ std::string alignment_lines(const Json& report) {
   const Json& alignment = report.at("alignment");
   if (alignment.is_null() || alignment.at("registration").is_null()) return "";
   const Json& registration = alignment.at("registration");
-  return fmt::format("\nbefore the alignment by {} (scale error {:.4g} %, {} iterations, overlap {} %)\n",
-                     alignment.at("method").get<std::string>(), 100.0 * alignment.at("scale_error").get<double>(),
-                     registration.at("iterations").get<int>(), hundredths(registration.at("overlap"))) +
+  const std::string verdict = registration.value("verdict", "not judged");
+  return fmt::format("\nbefore the alignment by {} ({}scale error {:.4g} %, {} iterations, overlap {} %)\n",
+                     alignment.at("method").get<std::string>(), verdict == "not judged" ? "" : verdict + ", ",
+                     100.0 * alignment.at("scale_error").get<double>(), registration.at("iterations").get<int>(),
+                     hundredths(registration.at("overlap"))) +
          lines(alignment.at("before"), [](const MetricInfo& info, const Json& entry) {
            return fmt::format("{:>10}", shown(info, entry.value("value", Json(nullptr))));
          });

@@ -56,7 +56,7 @@ Alignment align(const PointCloud& source, const PointCloud& target, const Regist
 /// The voxel that align() takes where none is given.
 double default_align_voxel_m(const PointCloud& target);
 
-/// Everything in an Alignment as JSON: units in the names, T_dst_src as rows.
+/// Everything in an Alignment as JSON: units in the names, T_dst_src as rows, `score` null where nothing was judged.
 nlohmann::ordered_json alignment_json(const Alignment& alignment);
 
 }  // namespace cmap

@@ -40,7 +40,11 @@ struct EvaluationOptions : MetricOptions {
   std::optional<double> align_voxel_m;
   std::optional<double> align_distance_m;
   bool align_scale = false;
+  bool allow_unconverged = false;  ///< score an alignment that is not to be trusted all the same
   TrajectoryFit trajectory_fit = TrajectoryFit::kSim3;
+  TimePairing trajectory_pairing = TimePairing::kInterpolated;
+  double trajectory_max_gap_s = 0.15;
+  std::optional<double> trajectory_time_offset_s;
   std::optional<double> tanks_and_temples_tau_m;
   bool sensitivity = false;
   double sensitivity_translation_m = 0.01;

@@ -16,7 +16,7 @@ struct ProtocolInputs {
 };
 
 /// The whole comparison as the options say: the scores before, the alignment, the band of small motions, the
-/// evaluation. Throws as align() and evaluate() do; UsageError where align = trajectory and a trajectory is missing.
+/// evaluation. Throws as align(), require_trust() and evaluate() do; UsageError where align = trajectory and a trajectory is missing.
 EvaluatedPair evaluate_by_protocol(PointCloud reference, PointCloud estimate, const EvaluationOptions& options,
                                    const ProtocolInputs& inputs = {}, const Execution& execution = {});
 
