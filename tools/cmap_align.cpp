@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cmap/align/align.hpp"
 #include "cmap/align/align_method.hpp"
@@ -16,6 +17,8 @@
 #include "cmap/core/execution.hpp"
 #include "cmap/io/number_text.hpp"
 #include "cmap/metrics/metric_options.hpp"
+#include "cmap/render/alignment_figure.hpp"
+#include "cmap/report/figure_module.hpp"
 #include "command_line.hpp"
 #include "files.hpp"
 #include "program.hpp"
@@ -40,7 +43,7 @@ constexpr const char* kExample =
     "than determined or a little weak, unless --allow-unconverged; 70 internal error.";
 
 struct Arguments {
-  std::string source, target, initial, times, time_offset, output, json, cloud;
+  std::string source, target, initial, times, time_offset, output, json, cloud, figure;
   cmap::AlignMethod method{AlignKind::kRegistration, &cmap::registration_method("gicp")};
   cmap::TrajectoryOptions trajectories;
   double voxel_m = 0.0, max_distance_m = 0.0, tau_m = 0.0;
@@ -49,7 +52,7 @@ struct Arguments {
   std::vector<std::uint8_t> classes;
   cmap::CommonArguments common;
 
-  std::vector<std::string> outputs() const { return {output, json, cloud}; }
+  std::vector<std::string> outputs() const { return {output, json, cloud, figure}; }
 };
 
 /// Those of registration first.
@@ -102,6 +105,9 @@ void add_options(cmap::CommandLine& line, Arguments& a) {
                   "one of these [gicp; of two files of poses: trajectory]");
   line.add("-o,--output", a.output, "FILE", "transform to write: 4x4 as text").not_empty();
   line.add("--output-cloud", a.cloud, "FILE.ply", "SRC as moved onto DST, to write").not_empty();
+  line.add("--figure", a.figure, "FILE",
+           "picture to write: both maps before and after, distances, the second-best answer: .png, .jpg, .tif")
+      .not_empty();
   line.add("--json", a.json, "FILE", "everything about the result, to write").not_empty();
   add_method_options(line, a);
   line.add_flag("--allow-unconverged", a.allow_unconverged,
@@ -124,7 +130,8 @@ bool is_used(std::string_view option, const cmap::AlignMethod& method) {
   const bool of_trajectories = method.kind == AlignKind::kTrajectory;
   if (option == "--tau") return of_tanks;
   if (is_of_trajectories(option)) return of_trajectories;
-  if (option == "--output-cloud" || option == "--keep-noise" || option == "--classes") return !of_trajectories;
+  if (option == "--output-cloud" || option == "--figure" || option == "--keep-noise" || option == "--classes")
+    return !of_trajectories;
   if (option == "--initial") return needs_initial(method);
   if (method.kind != AlignKind::kRegistration) return false;
   if (option == "--max-distance") return method.registration->takes_max_distance;
@@ -136,18 +143,24 @@ bool is_used(std::string_view option, const cmap::AlignMethod& method) {
 void refuse_unused(const cmap::CommandLine& line, const cmap::AlignMethod& method) {
   for (const char* option :
        {"--initial", "--voxel", "--max-distance", "--scale", "--tau", "--fit", "--pairing", "--max-difference",
-        "--time-offset", "--max-gap", "--times", "--output-cloud", "--keep-noise", "--classes"}) {
+        "--time-offset", "--max-gap", "--times", "--output-cloud", "--figure", "--keep-noise", "--classes"}) {
     if (!line.has(option) || is_used(option, method)) continue;
     throw cmap::UsageError(
         fmt::format("{} has no meaning for --method {}", option, name_of(method, cmap::align_method_names())));
   }
 }
 
+/// The maps, where something is to be written of them.
+struct Maps {
+  cmap::PointCloud source, target;
+  Eigen::Matrix4d T_initial;
+};
+
 struct Result {
   cmap::Alignment alignment;
   nlohmann::ordered_json further = nlohmann::ordered_json::object();  ///< beside the alignment's own
   std::string scores;                                                 ///< further lines of the table
-  cmap::PointCloud moved = {};                                        ///< where it is to be written
+  std::optional<Maps> maps = {};
 };
 
 /// What was said of the inputs comes before what the alignment says.
@@ -207,7 +220,7 @@ Result align_maps(const Arguments& a) {
   if (a.voxel_m > 0.0) options.voxel_m = a.voxel_m;
   if (a.max_distance_m > 0.0) options.max_distance_m = a.max_distance_m;
   options.with_scale = a.scale;
-  const auto [source, target] = cmap::read_both(a.source, a.target, {.keep_noise = a.keep_noise, .classes = a.classes});
+  auto [source, target] = cmap::read_both(a.source, a.target, {.keep_noise = a.keep_noise, .classes = a.classes});
   Result result;
   if (a.method.kind == AlignKind::kTanksAndTemples) {
     result = run_tanks_and_temples(a, source.cloud, target.cloud, options.T_initial, warnings);
@@ -215,7 +228,9 @@ Result align_maps(const Arguments& a) {
     result.alignment = cmap::align(source.cloud, target.cloud, *a.method.registration, options);
     add_warnings(warnings, result.alignment);
   }
-  if (!a.cloud.empty()) result.moved = cmap::transformed(source.cloud, result.alignment.T_dst_src);
+  if (!a.cloud.empty() || !a.figure.empty()) {
+    result.maps = Maps{std::move(source.cloud), std::move(target.cloud), options.T_initial};
+  }
   return result;
 }
 
@@ -257,12 +272,18 @@ void require_trust(const Arguments& a, cmap::Alignment& alignment) {
 }
 
 /// Prints and writes everything, or writes nothing.
-void deliver(const Arguments& a, const Result& result) {
+void deliver(const Arguments& a, const Result& result, const std::optional<cmap::FigureModule>& figures) {
   const std::string matrix = cmap::transform_text(result.alignment.T_dst_src);
   cmap::OutputFiles files;
   files.add(a.output, [&](cmap::OutputFile& file) { file.write(matrix); });
   files.add(a.json, [&](cmap::OutputFile& file) { file.write(json_text(result)); });
-  files.add(a.cloud, [&](cmap::OutputFile& file) { cmap::write_ply(file, result.moved); });
+  files.add(a.cloud, [&](cmap::OutputFile& file) {
+    cmap::write_ply(file, cmap::transformed(result.maps->source, result.alignment.T_dst_src));
+  });
+  files.add(a.figure, [&](cmap::OutputFile& file) {
+    const auto& [source, target, T_initial] = *result.maps;
+    figures->write(cmap::AlignmentPicture{source, target, T_initial, result.alignment}, a.figure, file);
+  });
   if (!a.common.quiet && !cmap::any_to_standard_output(a.outputs())) {
     cmap::print(table(result) + (a.output.empty() ? "T_dst_src\n" + matrix : ""));
   }
@@ -284,9 +305,11 @@ cmap::ExitCode run(const cmap::CommandLine& line, Arguments& a) {
   cmap::refuse_overwriting({a.source, a.target, a.initial, a.times}, a.outputs());
   for (const std::string& output : a.outputs()) cmap::require_writable(output);
   cmap::check_extension(a.cloud, {".ply", ".PLY"}, "the moved map is written as PLY");
+  std::optional<cmap::FigureModule> figures;
+  if (!a.figure.empty()) figures.emplace().check_name(a.figure);
   Result result = a.method.kind == AlignKind::kTrajectory ? align_trajectories(a) : align_maps(a);
   require_trust(a, result.alignment);
-  deliver(a, result);
+  deliver(a, result, figures);
   return cmap::ExitCode::kDone;
 }
 

@@ -44,8 +44,7 @@ class ColorUse {
 
   void voxel(int phase, const VoxelIndex& index, const PhaseVoxel<ColorSums<Word>>& colors) {
     const std::uint64_t n_reference = colors.reference.n(), n_estimate = colors.estimate.n();
-    most_points_ = std::max({most_points_, n_reference, n_estimate});
-    if (n_reference < min_points_ || n_estimate < min_points_) return;
+    if (n_reference < min_points_ || n_estimate < min_points_ || !fits(n_reference) || !fits(n_estimate)) return;
     if (phase == 0) {
       found_.voxels.push_back({index, NAN, n_reference, n_estimate});
       if (with_sample_) {
@@ -55,7 +54,7 @@ class ColorUse {
     distances_.add(phase, colors.reference, colors.estimate, deliver());
   }
   void halves(const ColorSums<Word>& one, const ColorSums<Word>& other) {
-    if (one.n() < min_points_ || other.n() < min_points_) return;
+    if (one.n() < min_points_ || other.n() < min_points_ || !fits(one.n()) || !fits(other.n())) return;
     distances_.add(kOfHalves, one, other, deliver());
   }
 
@@ -64,10 +63,17 @@ class ColorUse {
     distances_.flush(deliver());
     return found_;
   }
-  std::uint64_t most_points() const { return most_points_; }
+  /// Whether a voxel had more points than words of this size can sum; it was left out.
+  bool is_overfull() const { return is_overfull_; }
 
  private:
   static constexpr int kOfHalves = -1;
+
+  bool fits(std::uint64_t n) {
+    const bool does = sizeof(Word) > 4 || n <= kMostNarrow;
+    is_overfull_ = is_overfull_ || !does;
+    return does;
+  }
 
   auto deliver() {
     return [this](int phase, double distance) {
@@ -84,7 +90,7 @@ class ColorUse {
   ColorDistances<Word> distances_;
   ColorVoxels found_;
   std::size_t n_delivered_ = 0;  ///< to `voxels`
-  std::uint64_t most_points_ = 0;
+  bool is_overfull_ = false;
 };
 
 /// The first corner of the voxels that the tasks have taken.
@@ -138,7 +144,7 @@ std::optional<std::vector<ColorVoxels>> color_voxels(const MapPair& pair, const 
   std::vector<Use> used = PhaseFold<Source, Use>(maps_of(pair), frame, source).run(none);
   std::vector<ColorVoxels> found;
   for (Use& use : used) {
-    if (sizeof(Word) == 4 && use.most_points() > kMostNarrow) return std::nullopt;
+    if (use.is_overfull()) return std::nullopt;
     found.push_back(std::move(use.finish()));
   }
   return found;

@@ -1,8 +1,9 @@
-// What cmap_eval loads when a figure is asked for.
+// What programs load when a figure is asked for.
 
 #include "cmap/report/figure_module.hpp"
 
 #include "cmap/core/loaded_module.hpp"
+#include "cmap/render/alignment_figure.hpp"
 #include "cmap/render/drawing_image.hpp"
 #include "cmap/render/image.hpp"
 #include "cmap/render/standard_figure.hpp"
@@ -15,8 +16,10 @@ void write_drawing(const Drawing& drawing, const std::filesystem::path& name, Ou
   write_image(image_of(drawing, kPixelsOfUnit), name, file);
 }
 
-constexpr FigureTable kTable{
-    .check_name = check_image_name, .write = write_standard_figure, .write_drawing = write_drawing};
+constexpr FigureTable kTable{.check_name = check_image_name,
+                             .write = write_standard_figure,
+                             .write_alignment = write_alignment_figure,
+                             .write_drawing = write_drawing};
 
 }  // namespace
 }  // namespace cmap

@@ -74,12 +74,22 @@ TEST(ColorWasserstein, IsThatOfTheSameColorsAsFloats) {
 }
 
 TEST(ColorWasserstein, OfMorePointsAVoxelThanNarrowWordsSum) {
-  constexpr std::size_t kPoints = 70'000;  // of 255^2 each: above 2^32
-  const std::vector<Eigen::Vector3f> places(kPoints, {0.1f, 0.1f, 0.1f});
-  const test::Clouds clouds{test::cloud_of(places, std::vector<Rgb8>(kPoints, {255, 255, 255})),
-                            test::cloud_of(places, std::vector<Rgb8>(kPoints, {204, 204, 204}))};
-  const Record found = test::measured(catalog::color_wasserstein, clouds, voxels_of(1.0, 10));
-  EXPECT_NEAR(*found.value, 0.2 * std::sqrt(3.0), 1e-14);  // some roundings of 1
+  // Beyond 66,051 points of white the squares alone would wrap; what wraps may look like anything, NaN included.
+  for (const std::size_t n : {65'536u, 65'537u, 70'000u, 140'000u, 1'000'000u}) {
+    const std::vector<Eigen::Vector3f> places(n, {0.1f, 0.1f, 0.1f});
+    std::vector<Rgb8> colors(n, {255, 255, 255});
+    for (std::size_t i = 0; i < n; i += 2) colors[i] = {155, 255, 205};
+    const test::Clouds clouds{test::cloud_of(places, colors),
+                              test::cloud_of(places, std::vector<Rgb8>(n, {255, 255, 255}))};
+    // Means differ by (50, 0, 25), and half and half of d apart has the variance d^2 / 4 n / (n - 1).
+    const double spread =
+        1.0 / 4.0 * (100.0 * 100.0 + 50.0 * 50.0) * static_cast<double>(n) / static_cast<double>(n - 1);
+    const Record found = test::measured(catalog::color_wasserstein, clouds, voxels_of(1.0, 10));
+    const double share = static_cast<double>((n + 1) / 2) / static_cast<double>(n);
+    const double variance = 4.0 * share * (1.0 - share) * spread;
+    const double shift = share * share * (100.0 * 100.0 + 50.0 * 50.0);
+    EXPECT_NEAR(*found.value, std::sqrt(shift + variance) / 255.0, 1e-12) << n;
+  }
 }
 
 TEST(ColorWasserstein, OfAMapAndItselfIsZero) {

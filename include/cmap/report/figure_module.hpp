@@ -8,12 +8,15 @@
 
 namespace cmap {
 
+struct AlignmentPicture;
+
 /// What module render gives those that load it.
 struct FigureTable {
   static constexpr const char* kModule = "figure";
-  static constexpr int kTable = 1;
+  static constexpr int kTable = 2;
   void (*check_name)(const std::filesystem::path& name);
   void (*write)(const EvaluatedPair& evaluation, const std::filesystem::path& name, OutputFile& file);
+  void (*write_alignment)(const AlignmentPicture& picture, const std::filesystem::path& name, OutputFile& file);
   void (*write_drawing)(const Drawing& drawing, const std::filesystem::path& name, OutputFile& file);
 };
 
@@ -29,6 +32,11 @@ class FigureModule {
   /// write_standard_figure of module render.
   void write(const EvaluatedPair& evaluation, const std::filesystem::path& name, OutputFile& file) const {
     table_.write(evaluation, name, file);
+  }
+
+  /// write_alignment_figure of module render.
+  void write(const AlignmentPicture& picture, const std::filesystem::path& name, OutputFile& file) const {
+    table_.write_alignment(picture, name, file);
   }
 
   /// The drawing as a picture of the name's format.

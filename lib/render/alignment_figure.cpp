@@ -1,0 +1,123 @@
+#include "cmap/render/alignment_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <deque>
+
+#include "cmap/geometry/order_statistics.hpp"
+#include "cmap/render/figure.hpp"
+#include "cmap/spatial/nearest.hpp"
+
+namespace cmap {
+namespace {
+
+// Told apart by the color-blind, too, and on white.
+constexpr Rgb8 kTargetColor{44, 98, 160}, kSourceColor{230, 126, 34};
+
+/// Every k-th point, at most about half a million.
+PointCloud thinned_to_show(const PointCloud& cloud) {
+  constexpr std::size_t kMost = 500'000;
+  const std::size_t step = cloud.size() / kMost + 1;
+  PointCloud some;
+  some.origin = cloud.origin;
+  for (std::size_t i = 0; i < cloud.size(); i += step) some.positions.push_back(cloud.positions[i]);
+  return some;
+}
+
+PointCloud together(const PointCloud& target, const PointCloud& moved) {
+  PointCloud both = target;
+  const Eigen::Vector3d shift = moved.origin - target.origin;
+  for (const Eigen::Vector3f& p : moved.positions) both.positions.push_back((p.cast<double>() + shift).cast<float>());
+  return both;
+}
+
+/// The panels, and the points that they show.
+struct Panels {
+  std::deque<PointBlocks> points;
+  std::vector<Layer> layers;
+
+  Layer& add(std::string title, std::string caption, const PointCloud& cloud) {
+    points.push_back(sort_points(cloud));
+    Layer& layer = layers.emplace_back();
+    layer.title = std::move(title);
+    layer.caption = std::move(caption);
+    layer.points = &points.back();
+    layer.colors.resize(points.back().size);
+    return layer;
+  }
+
+  void add_both(std::string title, std::string caption, const PointCloud& target, const PointCloud& moved) {
+    Layer& layer = add(std::move(title), std::move(caption), together(target, moved));
+    for (std::size_t slot = 0; slot < layer.colors.size(); ++slot) {
+      layer.colors[slot] = layer.points->original_index[slot] < target.size() ? kTargetColor : kSourceColor;
+    }
+    layer.classes = {{"DST", kTargetColor}, {"SRC", kSourceColor}};
+  }
+};
+
+/// The scale ends where 95 % of the distances do, but at 4 times what counted as a match at most.
+void add_distances(const PointCloud& target, const PointCloud& moved, double max_distance_m, Panels& panels) {
+  constexpr double kShown = 0.95, kMostReaches = 4.0;
+  Layer& layer = panels.add("distance of SRC to DST", "", moved);
+  const Bvh index(sort_points(target));
+  const NearestField nearest = find_nearest(index, *layer.points);
+  std::vector<double> distances_m(layer.colors.size());
+  for (std::size_t i = 0; i < distances_m.size(); ++i) distances_m[i] = std::sqrt(nearest.sq_dist[i]);
+  std::vector<double> ordered = distances_m;
+  ColorScale scale{.unit = "m"};
+  scale.high = value_at_rank(ordered, static_cast<std::size_t>(kShown * static_cast<double>(ordered.size() - 1)));
+  if (max_distance_m > 0.0) scale.high = std::min(scale.high, kMostReaches * max_distance_m);
+  if (!(scale.high > 0.0)) scale.high = 1.0;
+  for (std::size_t i = 0; i < distances_m.size(); ++i) layer.colors[i] = color_of(distances_m[i], scale);
+  layer.scale = scale;
+}
+
+Eigen::Vector3d center_of(const PointCloud& cloud) {
+  const Box3d box = box_to_show(sort_points(cloud));
+  return 0.5 * (box.min + box.max);
+}
+
+/// Before the alignment, in view.
+void add_before(const AlignmentPicture& picture, const PointCloud& target, const PointCloud& source, Panels& panels) {
+  PointCloud before = transformed(source, picture.T_initial);
+  const Box3d shown = box_to_show(sort_points(target));
+  const Eigen::Vector3d apart = center_of(before) - 0.5 * (shown.min + shown.max);
+  std::string caption = "as given";
+  if (apart.norm() > (shown.max - shown.min).norm()) {
+    before.origin -= apart;
+    caption = fmt::format("SRC is {:.3g} m away, shown moved here", apart.norm());
+  }
+  panels.add_both("before", std::move(caption), target, before);
+}
+
+}  // namespace
+
+Image draw_alignment(const AlignmentPicture& picture) {
+  const Alignment& found = picture.alignment;
+  const Judgment& judgment = found.judgment;
+  const PointCloud target = thinned_to_show(picture.target), source = thinned_to_show(picture.source);
+  const PointCloud moved = transformed(source, found.T_dst_src);
+  Panels panels;
+  add_before(picture, target, source, panels);
+  panels.add_both(fmt::format("after: {}", name_of(judgment.verdict, verdict_names())),
+                  fmt::format("score {:.3g}", judgment.score), target, moved);
+  const PointBlocks& after = panels.points.back();
+  add_distances(target, moved, found.max_distance_m, panels);
+  if (!judgment.rivals.empty()) {
+    const RivalPose& rival = judgment.rivals.front();
+    panels.add_both("second-best answer", fmt::format("score {:.3g}", rival.score), target,
+                    transformed(source, rival.T_dst_src));
+  }
+  FigureOptions options;
+  options.width_px = 700 * static_cast<int>(panels.layers.size());
+  options.height_px = 800;
+  return draw_figure(panels.layers, camera_for(View::kTop, after, panel_aspect(panels.layers.size(), options), true),
+                     options);
+}
+
+void write_alignment_figure(const AlignmentPicture& picture, const std::filesystem::path& name, OutputFile& file) {
+  write_image(draw_alignment(picture), name, file);
+}
+
+}  // namespace cmap
