@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "witness.hpp"
@@ -9,9 +10,8 @@ namespace cmap {
 
 /// How two maps agree at a pose, both ways.
 struct Agreement {
-  /// Of each witness, the source's by slot and then the target's: it agrees, does not, or was not to be seen.
   enum State : std::uint8_t { kUnseen, kDisagrees, kAgrees };
-  std::vector<State> state;
+  std::vector<State> state;  ///< of each witness, the source's by slot, then the target's
 
   struct Sums {
     double common = 0.0, agreeing = 0.0;  ///< weights of the witnesses
@@ -25,18 +25,21 @@ using Chance = std::array<double, WitnessMap::kClasses>;
 /// Compares two maps' witnesses with the other's surface: near, and facing the same way.
 class AgreementField {
  public:
-  /// `reach_m`: along normals; target's units. Both maps must outlive it.
-  AgreementField(WitnessMap& source, WitnessMap& target, double reach_m);
+  /// Both maps must outlive it.
+  AgreementField(WitnessMap& source, WitnessMap& target) : source_(source), target_(target) {}
 
-  /// `local`: from offsets from the source's origin to offsets from the target's. Each step-th witness.
-  Agreement at(const Similarity& local, std::size_t step = 1);
+  /// `local`: rigid, from offsets from the source's origin to offsets from the target's; `reach_m`: along normals. Each
+  /// step-th witness takes part.
+  Agreement at(const Similarity& local, double reach_m, std::size_t step = 1);
 
-  /// From the agreement after shifts across the target's up by several lengths in all directions: on the ground,
+  /// From the agreement after shifts across the target's up in all directions, by shortest_m and more: on the ground,
   /// everything agrees with the ground.
-  Chance chance_about(const Similarity& local, double shortest_m);
+  Chance chance_about(const Similarity& local, double reach_m, double shortest_m);
 
-  const WitnessMap::Witness& witness(std::size_t i) const;
-  std::size_t size() const { return source_.witnesses.size() + target_.witnesses.size(); }
+  const WitnessMap::Witness& witness(std::size_t i) const {
+    return i < source_.size() ? source_[i] : target_[i - source_.size()];
+  }
+  std::size_t size() const { return source_.size() + target_.size(); }
 
  private:
   void look(WitnessMap& from, WitnessMap& to, const Similarity& local, double reach_m, std::size_t step,
@@ -44,7 +47,19 @@ class AgreementField {
 
   WitnessMap& source_;
   WitnessMap& target_;
-  double reach_m_;
 };
+
+/// What an agreement is worth against chance.
+struct Worth {
+  /// Of the witnesses, as each class tells right from wrong (one minus its chance): the share that agrees, less what
+  /// chance gives, 0 by chance and 1 at most.
+  double score = 0.0;
+  double support = 0.0;   ///< witnesses that agree beyond chance
+  double evidence = 0.0;  ///< log likelihood ratio against chance
+};
+Worth worth_of(const Agreement& agreement, const Chance& chance);
+
+/// How many standard errors a pose fits better than another, witness by witness.
+double advantage(const AgreementField& field, const Agreement& of, const Agreement& over, const Chance& chance);
 
 }  // namespace cmap

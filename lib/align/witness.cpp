@@ -11,17 +11,22 @@ namespace cmap {
 namespace {
 
 constexpr std::size_t kPlanePoints = 10;
-constexpr double kThin = 0.2;        ///< variance across a surface over that along, at most
+constexpr std::size_t kMostWitnesses = 3000;
+constexpr double kThin = 0.2;  ///< variance across a surface over that along, at most
 constexpr double kFacesUp = 0.9, kFacesAside = 0.35;
 constexpr double kNearGround = 2.0;  ///< voxels of the plan's layers
 constexpr double kFullBlock = 3.0;   ///< points from which a block counts as one
 
+Array<std::uint32_t> every_few(std::size_t n, std::size_t most) {
+  Array<std::uint32_t> slots;
+  const std::size_t step = (n + most - 1) / most;
+  for (std::size_t slot = step / 2; slot < n; slot += step) slots.push_back(static_cast<std::uint32_t>(slot));
+  return slots;
+}
+
 double spacing_of(const Bvh& index) {
   constexpr std::size_t kSample = 1000;
-  Array<std::uint32_t> slots;
-  for (std::size_t slot = 0; slot < index.points.size; slot += index.points.size / kSample + 1) {
-    slots.push_back(static_cast<std::uint32_t>(slot));
-  }
+  const Array<std::uint32_t> slots = every_few(index.points.size, kSample);
   const Array<std::uint32_t> nearest = find_k_nearest(index, chosen_points(index.points, slots), 2);
   Array<double> spacing(slots.size());
   for (std::size_t i = 0; i < slots.size(); ++i) {
@@ -33,76 +38,54 @@ double spacing_of(const Bvh& index) {
 
 }  // namespace
 
-bool is_surface(const Surface& surface, std::size_t slot) {
-  return surface.normal(slot).squaredNorm() > 0.5 &&
-         surface.tilt_variance(slot) * static_cast<double>(kPlanePoints) < kThin;
+FineMap::FineMap(const PointCloud& cloud, double voxel_m)
+    : points(thinned_to(cloud, voxel_m), kPlanePoints), spacing_m(spacing_of(points.index)) {}
+
+bool FineMap::is_surface(std::size_t slot) const {
+  return points.surface.normal(slot).squaredNorm() > 0.5 &&
+         points.surface.tilt_variance(slot) * static_cast<double>(kPlanePoints) < kThin;
 }
 
-WitnessMap::WitnessMap(const PointCloud& cloud, const ColumnMap& plan, const Sizes& sizes)
-    : columns(plan),
-      fine(thinned_to(cloud, sizes.fine_voxel_m), kPlanePoints),
-      spacing_m(spacing_of(fine.index)),
-      points(choose(sizes)) {
-  weigh(sizes.block_m);
-}
-
-PointCloud WitnessMap::choose(const Sizes& sizes) {
-  const PointBlocks& all = fine.index.points;
-  const std::size_t step = (all.size + sizes.most_points - 1) / sizes.most_points;
-  Array<std::uint32_t> slots;
-  for (std::size_t slot = step / 2; slot < all.size; slot += step) slots.push_back(static_cast<std::uint32_t>(slot));
-  fine.surface.fit(slots);
-  PointCloud chosen;
-  chosen.origin = all.origin;
+WitnessMap::WitnessMap(FineMap& fine, const ColumnMap& plan, double block_m) : fine_(fine), plan_(plan) {
+  const Array<std::uint32_t> slots = every_few(fine.points.index.points.size, kMostWitnesses);
+  fine.points.surface.fit(slots);
+  points_ = chosen_points(fine.points.index.points, slots);
   for (const std::uint32_t slot : slots) {
-    chosen.positions.push_back(all.offset(slot));
-    const Eigen::Vector3d normal = is_surface(fine.surface, slot) ? fine.surface.normal(slot) : Eigen::Vector3d::Zero();
-    witnesses.push_back({normal.cast<float>(), 1.0f, 0});
+    Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+    if (fine.is_surface(slot)) normal = fine.points.surface.normal(slot).cast<float>();
+    witnesses_.push_back({normal, 1.0f, kind_of(fine.points.index.points.offset(slot).cast<double>(), normal)});
   }
-  return chosen;
+  weigh(block_m);
+}
+
+std::uint8_t WitnessMap::kind_of(const Eigen::Vector3d& p, const Eigen::Vector3f& normal) const {
+  const double lift = std::abs(normal.cast<double>().dot(plan_.upright.row(2).transpose()));
+  const int facing = normal.squaredNorm() < 0.5f ? 3 : lift > kFacesUp ? 0 : lift < kFacesAside ? 1 : 2;
+  const Eigen::Vector3d turned = plan_.upright * p;
+  const Eigen::Vector2d cell = (turned.head<2>() - plan_.low_m) / plan_.cell_m;
+  const int x = std::clamp(static_cast<int>(cell.x()), 0, plan_.width - 1);
+  const int y = std::clamp(static_cast<int>(cell.y()), 0, plan_.height - 1);
+  const bool is_high = turned.z() - static_cast<double>(plan_.ground_at(x, y)) > kNearGround * plan_.layer_m;
+  return static_cast<std::uint8_t>(facing + (is_high ? 4 : 0));
 }
 
 void WitnessMap::weigh(double block_m) {
-  const std::vector<Witness> chosen = witnesses;
-  const PointBlocks& moved = points.points();
   std::array<VoxelMap<double>, kClasses> counts;
-  const VoxelFrame frame(bounds(PointCloud{Eigen::Vector3d::Zero(),
-                                           [&] {
-                                             Array<Eigen::Vector3f> offsets;
-                                             for (std::size_t s = 0; s < moved.size; ++s) {
-                                               offsets.push_back(moved.offset(s));
-                                             }
-                                             return offsets;
-                                           }(),
-                                           {},
-                                           0.0}),
-                         block_m);
-  const Eigen::Vector3d up = columns.upright.row(2).transpose();
-  for (std::size_t slot = 0; slot < moved.size; ++slot) {
-    Witness& witness = witnesses[slot];
-    witness = chosen[moved.original_index[slot]];
-    const Eigen::Vector3d p = moved.offset(slot).cast<double>();
-    const double lift = std::abs(witness.normal.cast<double>().dot(up));
-    const bool has_surface = witness.normal.squaredNorm() > 0.5f;
-    const int facing = !has_surface ? 3 : lift > kFacesUp ? 0 : lift < kFacesAside ? 1 : 2;
-    const Eigen::Vector3d turned = columns.upright * p;
-    const Eigen::Vector2d cell = (turned.head<2>() - columns.low_m) / columns.cell_m;
-    const int x = std::clamp(static_cast<int>(cell.x()), 0, columns.width - 1);
-    const int y = std::clamp(static_cast<int>(cell.y()), 0, columns.height - 1);
-    const bool is_high = turned.z() - static_cast<double>(columns.ground_at(x, y)) > kNearGround * columns.layer_m;
-    witness.kind = static_cast<std::uint8_t>(facing + (is_high ? 4 : 0));
-    counts[witness.kind][frame.key(p)] += 1.0;
-  }
-  for (std::size_t slot = 0; slot < moved.size; ++slot) {
-    const double n = *counts[witnesses[slot].kind].find(frame.key(moved.offset(slot).cast<double>()));
-    witnesses[slot].weight = static_cast<float>(std::min(1.0, n / kFullBlock) / n);
+  PointCloud box_of;
+  for (std::size_t slot = 0; slot < size(); ++slot) box_of.positions.push_back(points_.offset(slot));
+  const VoxelFrame frame(bounds(box_of), block_m);
+  const auto key = [&](std::size_t slot) { return frame.key(points_.offset(slot).cast<double>()); };
+  for (std::size_t slot = 0; slot < size(); ++slot) counts[witnesses_[slot].kind][key(slot)] += 1.0;
+  for (std::size_t slot = 0; slot < size(); ++slot) {
+    const double n = *counts[witnesses_[slot].kind].find(key(slot));
+    witnesses_[slot].weight = static_cast<float>(std::min(1.0, n / kFullBlock) / n);
   }
 }
 
 bool WitnessMap::was_seen_at(const Eigen::Vector3d& p) const {
-  const Eigen::Vector2d cell = ((columns.upright * p).head<2>() - columns.low_m) / columns.cell_m;
+  const Eigen::Vector2d cell = ((plan_.upright * p).head<2>() - plan_.low_m) / plan_.cell_m;
   const int x = static_cast<int>(std::floor(cell.x())), y = static_cast<int>(std::floor(cell.y()));
-  return columns.word_at(x, y) != ColumnMap::kEmpty;
+  return plan_.word_at(x, y) != ColumnMap::kEmpty;
 }
 
 }  // namespace cmap

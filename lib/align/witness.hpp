@@ -9,43 +9,48 @@
 
 namespace cmap {
 
-/// A map as poses are judged on it: some of its points with what they are like, all of its fine points to meet, and
-/// the plan of where it was seen.
+/// A map's points as finely as poses are judged, with their surface.
+struct FineMap {
+  FineMap(const PointCloud& cloud, double voxel_m);
+  /// Whether points spread across a slot's normal far less than along; the slot must have been fitted.
+  bool is_surface(std::size_t slot) const;
+
+  RegistrationTarget points;
+  double spacing_m = 0.0;  ///< of neighbors, median
+};
+
+/// Some of a map's points, with what they are like: poses are judged by what of the other map they meet.
 class WitnessMap {
  public:
   /// What chance agreement depends on: surfaces that face up, sideways or between, and what is no surface; near the
   /// ground or above.
   static constexpr std::size_t kClasses = 8;
 
-  struct Sizes {
-    double fine_voxel_m;
-    double block_m;  ///< points of one class in such a cube are one witness
-    std::size_t most_points = 3000;
-  };
-
-  WitnessMap(const PointCloud& cloud, const ColumnMap& columns, const Sizes& sizes);
-
   struct Witness {
     Eigen::Vector3f normal;  ///< zero: no surface
-    float weight;            ///< those of a block's class sum to one at most
+    float weight;            ///< those of a class in one block sum to one at most
     std::uint8_t kind;       ///< its class
   };
 
+  /// The plan's frame says what faces up. `block_m`: the side of blocks. Both maps must outlive it.
+  WitnessMap(FineMap& fine, const ColumnMap& plan, double block_m);
+
+  FineMap& fine() { return fine_; }
+  const ColumnMap& plan() const { return plan_; }
+  const PointBlocks& points() const { return points_; }
+  const Witness& operator[](std::size_t slot) const { return witnesses_[slot]; }
+  std::size_t size() const { return witnesses_.size(); }
   /// Whether the map was seen where this point is, in its own frame.
   bool was_seen_at(const Eigen::Vector3d& p) const;
 
-  const ColumnMap& columns;
-  RegistrationTarget fine;
-  double spacing_m = 0.0;  ///< of the fine points, median
-  std::vector<Witness> witnesses;  ///< by slot of `points`
-  MovingSource points;             ///< those that witness
-
  private:
-  PointCloud choose(const Sizes& sizes);
+  std::uint8_t kind_of(const Eigen::Vector3d& p, const Eigen::Vector3f& normal) const;
   void weigh(double block_m);
-};
 
-/// Whether a normal is that of a surface: points spread across it far less than along.
-bool is_surface(const Surface& surface, std::size_t slot);
+  FineMap& fine_;
+  const ColumnMap& plan_;
+  PointBlocks points_;
+  std::vector<Witness> witnesses_;  ///< by slot of points_
+};
 
 }  // namespace cmap

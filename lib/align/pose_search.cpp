@@ -1,0 +1,175 @@
+#include "pose_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cmap/core/error.hpp"
+#include "column_search.hpp"
+#include "upright.hpp"
+
+namespace cmap {
+namespace {
+
+// Lengths in voxels.
+constexpr double kCell = 1.6;        ///< of the columns
+constexpr double kRecut = 0.3;       ///< shift of the second cutting, in cells
+constexpr double kBlock = 5.0;       ///< of the witnesses
+constexpr double kFineVoxel = 0.25;
+constexpr double kCoarseReach = 1.0; ///< for poses from columns, which are this far off
+constexpr double kCoarseVoxel = 2.0, kCoarseDistance = 4.0, kFineDistance = 1.5;
+constexpr int kRefinedSteps = 15;
+
+constexpr std::size_t kColumnPoses = 32, kRefinedPoses = 6;
+constexpr std::size_t kQuickStep = 4;  ///< of the witnesses, for poses from columns
+
+std::span<const Eigen::Vector3f> points_of(const PointCloud& cloud) {
+  return {cloud.positions.data(), cloud.positions.size()};
+}
+
+/// Agreement of a class at most of some poses, as most are wrong.
+Chance chance_among(const std::vector<Agreement>& agreements) {
+  constexpr double kPrior = 4.0, kPriorShare = 0.3;
+  Chance chance{};
+  for (std::size_t k = 0; k < chance.size(); ++k) {
+    double common = kPrior, agreeing = kPrior * kPriorShare;
+    for (const Agreement& agreement : agreements) {
+      common += agreement.by_class[k].common;
+      agreeing += agreement.by_class[k].agreeing;
+    }
+    chance[k] = std::clamp(agreeing / common, 0.02, 0.98);
+  }
+  return chance;
+}
+
+IcpOptions refinement_options(double voxel_m, double max_distance_m) {
+  IcpOptions options;
+  options.metric = IcpMetric::kGicp;
+  options.levels = {{voxel_m, max_distance_m, kRefinedSteps}};
+  options.min_translation_voxels = 5e-3;  // finer levels follow
+  options.min_rotation_rad = 1e-4;
+  return options;
+}
+
+}  // namespace
+
+PoseSearch::Stance::Stance(FineMap& fine, const PointCloud& thinned, const Eigen::Matrix3d& upright, double voxel_m)
+    : columns(points_of(thinned), upright, kCell * voxel_m, voxel_m),
+      recut(points_of(thinned), upright, kCell * voxel_m, voxel_m, kRecut),
+      witnesses(fine, columns, kBlock * voxel_m) {}
+
+PoseSearch::PoseSearch(const PointCloud& source, const PointCloud& target, double voxel_m)
+    : source_origin_(source.origin),
+      voxel_m_(voxel_m),
+      reach_m_(kFineVoxel * voxel_m),
+      thinned_source_(thinned_to(source, voxel_m)),
+      thinned_target_(thinned_to(target, voxel_m)),
+      fine_source_(source, kFineVoxel * voxel_m),
+      fine_target_(target, kFineVoxel * voxel_m),
+      coarse_{refinement_options(kCoarseVoxel * voxel_m, kCoarseDistance * voxel_m)},
+      fine_{refinement_options(voxel_m, kFineDistance * voxel_m)} {
+  const Ups source_ups = ups_of(thinned_source_), target_ups = ups_of(thinned_target_);
+  for (const Eigen::Vector3d& up : source_ups.all) source_uprights_.push_back(upright_from(up));
+  target_stance_ =
+      std::make_unique<Stance>(fine_target_, thinned_target_, upright_from(target_ups.all.front()), voxel_m_);
+  stand(std::size_t{0});
+}
+
+void PoseSearch::stand(const Eigen::Matrix3d& upright) {
+  field_.reset();
+  source_stance_ = std::make_unique<Stance>(fine_source_, thinned_source_, upright, voxel_m_);
+  field_ = std::make_unique<AgreementField>(source_stance_->witnesses, target_stance_->witnesses);
+}
+
+void PoseSearch::stand_as(const Similarity& local) { stand(target_stance_->columns.upright * local.rotation); }
+
+std::vector<JudgedPose> PoseSearch::search(bool mirrored) {
+  const RecutColumns both[] = {{source_stance_->columns, source_stance_->recut},
+                               {target_stance_->columns, target_stance_->recut}};
+  std::vector<Similarity> poses;
+  for (const ColumnPose& pose : search_columns(source_stance_->columns, target_stance_->columns, word_scores(both),
+                                               mirrored, kColumnPoses)) {
+    poses.push_back(pose.local);
+  }
+  return ranked(poses, kRefinedPoses);
+}
+
+std::vector<JudgedPose> PoseSearch::ranked(std::vector<Similarity> poses, std::size_t n_best) {
+  std::vector<Agreement> agreements;
+  for (const Similarity& pose : poses) agreements.push_back(field_->at(pose, kCoarseReach * voxel_m_, kQuickStep));
+  const Chance chance = chance_among(agreements);
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i < poses.size(); ++i) order.emplace_back(-worth_of(agreements[i], chance).evidence, i);
+  std::sort(order.begin(), order.end());
+  std::vector<Similarity> best;
+  for (std::size_t i = 0; i < std::min(n_best, order.size()); ++i) best.push_back(poses[order[i].second]);
+  return refined(best);
+}
+
+std::vector<Similarity> PoseSearch::run(Refinement& refinement, const std::vector<Similarity>& guesses) {
+  if (!refinement.level) {
+    refinement.level = std::make_unique<LevelMatches>(thinned_source_, thinned_target_, 1.0,
+                                                      refinement.options.levels[0], refinement.options.neighbors);
+    refinement.next = icp_metric(refinement.options)(*refinement.level);
+  }
+  std::vector<Similarity> found;
+  for (const Similarity& guess : guesses) {
+    try {
+      found.push_back(run_level(*refinement.level, refinement.next, guess, refinement.options).local);
+    } catch (const UnsupportedError&) {
+      // Nothing to hold on to: no pose.
+    }
+  }
+  return found;
+}
+
+Similarity PoseSearch::settled(const Similarity& local) {
+  const std::vector<Similarity> found = run(fine_, {local});
+  return found.empty() ? local : found.front();
+}
+
+std::vector<JudgedPose> PoseSearch::refined(const std::vector<Similarity>& guesses) {
+  const std::vector<Similarity> found = run(coarse_, guesses);
+  std::vector<Agreement> agreements;
+  for (const Similarity& pose : found) agreements.push_back(field_->at(pose, reach_m_));
+  const Chance chance = chance_among(agreements);
+  std::vector<JudgedPose> judged;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    judged.push_back({found[i], agreements[i], worth_of(agreements[i], chance)});
+  }
+  std::stable_sort(judged.begin(), judged.end(),
+                   [](const JudgedPose& a, const JudgedPose& b) { return a.worth.evidence > b.worth.evidence; });
+  std::vector<JudgedPose> distinct;
+  for (const JudgedPose& pose : judged) {
+    const auto is_apart = [&](const JudgedPose& o) { return apart_m(pose.local, o.local) > distinct_m(); };
+    if (std::all_of(distinct.begin(), distinct.end(), is_apart)) distinct.push_back(pose);
+  }
+  return distinct;
+}
+
+JudgedPose PoseSearch::judge(const Similarity& local, const Chance& chance) {
+  JudgedPose pose{local, field_->at(local, reach_m_), {}};
+  pose.worth = worth_of(pose.agreement, chance);
+  return pose;
+}
+
+Chance PoseSearch::chance_about(const Similarity& local) {
+  return field_->chance_about(local, reach_m_, std::max(3.0 * voxel_m_, 6.0 * reach_m_));
+}
+
+double PoseSearch::advantage_of(const JudgedPose& pose, const JudgedPose& rival, const Chance& chance) const {
+  return advantage(*field_, pose.agreement, rival.agreement, chance);
+}
+
+double PoseSearch::apart_m(const Similarity& a, const Similarity& b) const {
+  const Box3d box = bounds(thinned_source_);
+  double farthest = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d p = Eigen::Vector3d((corner & 1 ? box.max : box.min).x(), (corner & 2 ? box.max : box.min).y(),
+                                              (corner & 4 ? box.max : box.min).z()) -
+                              source_origin_;
+    farthest = std::max(farthest, (a * p - b * p).norm());
+  }
+  return farthest;
+}
+
+}  // namespace cmap
