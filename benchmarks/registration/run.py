@@ -109,7 +109,7 @@ def main():
             rows.append(try_pair(args, pair, Path(folder)))
             show(k, rows[-1])
             if args.out:
-                Path(args.out).write_text(json.dumps(rows, indent=1, default=lambda a: None))
+                Path(args.out).write_text(json.dumps(rows, indent=1, default=str))
     table(rows, shares)
     return any(r.get("ours") == "wrong" for r in rows)
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "cmap/spatial/k_nearest.hpp"
+
 namespace cmap {
 namespace {
 
@@ -78,6 +80,40 @@ void AgreementField::look(WitnessMap& from, WitnessMap& to, const Similarity& lo
     }
     found.state[first + seen[i]] = is_met ? Agreement::kAgrees : Agreement::kDisagrees;
     Agreement::Sums& sums = found.by_class[witness.kind];
+    sums.common += static_cast<double>(witness.weight);
+    if (is_met) sums.agreeing += static_cast<double>(witness.weight);
+  }
+}
+
+Agreement AgreementField::at_best(const Agreement& found, double reach_m) {
+  Agreement best;
+  best.state = found.state;
+  look_at_home(source_, reach_m, 0, best);
+  look_at_home(target_, reach_m, source_.size(), best);
+  return best;
+}
+
+void AgreementField::look_at_home(WitnessMap& map, double reach_m, std::size_t first, Agreement& best) {
+  const Bvh& index = map.fine().points.index;
+  const Array<std::uint32_t> nearest = find_k_nearest(index, map.points(), 2);
+  Array<std::uint32_t> met;
+  for (std::size_t slot = 0; slot < map.size(); ++slot) {
+    if (nearest[2 * slot + 1] != kNoNeighbor) met.push_back(nearest[2 * slot + 1]);
+  }
+  map.fine().points.surface.fit(met);
+  for (std::size_t slot = 0; slot < map.size(); ++slot) {
+    Agreement::State& state = best.state[first + slot];
+    if (state == Agreement::kUnseen) continue;
+    const WitnessMap::Witness& witness = map[slot];
+    const std::uint32_t other = nearest[2 * slot + 1];
+    bool is_met = other != kNoNeighbor;
+    if (is_met) {
+      const Eigen::Vector3d d = (map.points().offset(slot) - index.points.offset(other)).cast<double>();
+      is_met = d.norm() <= farthest_m(map.fine(), reach_m) &&
+               agrees(d, witness.normal.cast<double>(), map.fine(), other, reach_m);
+    }
+    state = is_met ? Agreement::kAgrees : Agreement::kDisagrees;
+    Agreement::Sums& sums = best.by_class[witness.kind];
     sums.common += static_cast<double>(witness.weight);
     if (is_met) sums.agreeing += static_cast<double>(witness.weight);
   }

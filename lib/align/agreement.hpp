@@ -36,12 +36,17 @@ class AgreementField {
   /// everything agrees with the ground.
   Chance chance_about(const Similarity& local, double reach_m, double shortest_m);
 
+  /// What agreement could be at most: of the same witnesses that were seen there, each compared with its neighbor in
+  /// its own map, as if the other map were another sample of it.
+  Agreement at_best(const Agreement& found, double reach_m);
+
   const WitnessMap::Witness& witness(std::size_t i) const {
     return i < source_.size() ? source_[i] : target_[i - source_.size()];
   }
   std::size_t size() const { return source_.size() + target_.size(); }
 
  private:
+  void look_at_home(WitnessMap& map, double reach_m, std::size_t first, Agreement& best);
   void look(WitnessMap& from, WitnessMap& to, const Similarity& local, double reach_m, std::size_t step,
             std::size_t first, Agreement& found);
 

@@ -13,6 +13,7 @@
 #include "cmap/geometry/order_statistics.hpp"
 #include "cmap/io/transform_file.hpp"
 #include "cmap/spatial/k_nearest.hpp"
+#include "judge.hpp"
 
 namespace cmap {
 namespace {
@@ -129,6 +130,7 @@ Alignment align(const PointCloud& source, const PointCloud& target, const Regist
   if (found.voxel_m > 0.0) {
     settle_on_common_points(source, target, options.with_scale || method.scale == ScaleRule::kAlways, found);
   }
+  if (found.judgment.verdict == Verdict::kNotJudged) found.judgment = judge_alignment(source, target, found);
   return found;
 }
 

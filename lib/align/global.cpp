@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
 
 #include "cmap/align/icp.hpp"
-#include "cmap/align/umeyama.hpp"
 #include "cmap/core/error.hpp"
 #include "judge.hpp"
 #include "pose_search.hpp"
@@ -14,18 +16,8 @@
 namespace cmap {
 namespace {
 
-constexpr double kVoxelsPerSize = 100.0;
-constexpr double kMostVoxelsPerSize = 300.0;  ///< of the larger map
 constexpr std::size_t kFewestPoints = 10;
-
-/// What a box with the same spread would have as its diagonal: blind to a few strays.
-double size_of(const PointCloud& cloud) {
-  const PairMoments spread = pair_moments(cloud.size(), [&](std::size_t i) {
-    const Eigen::Vector3d p = cloud.positions[i].cast<double>();
-    return WeightedPair{p, p, 1.0};
-  });
-  return std::sqrt(12.0 * spread.scatter_p.trace() / spread.weight);
-}
+constexpr double kLeastScale = 1e-3, kMostScale = 1e3;
 
 void require_points(const PointCloud& cloud, const char* which) {
   if (cloud.size() < kFewestPoints) {
@@ -34,25 +26,8 @@ void require_points(const PointCloud& cloud, const char* which) {
   if (!(size_of(cloud) > 0.0)) throw UnsupportedError(fmt::format("all points of the {} coincide", which));
 }
 
-/// So that a voxel holds more than one point.
-double wide_enough(const PointCloud& cloud, double voxel_m) {
-  constexpr double kKept = 0.7, kWider = 1.4;
-  constexpr int kTries = 12;
-  for (int i = 0; i < kTries; ++i, voxel_m *= kWider) {
-    const auto n_left = static_cast<double>(thinned_to(cloud, voxel_m).size());
-    if (n_left < kKept * static_cast<double>(cloud.size())) break;
-  }
-  return voxel_m;
-}
-
-double search_voxel_m(const PointCloud& source, const PointCloud& target) {
-  const double a = size_of(source), b = size_of(target);
-  const double voxel_m = std::max(std::min(a, b) / kVoxelsPerSize, std::max(a, b) / kMostVoxelsPerSize);
-  return std::max(wide_enough(source, voxel_m), wide_enough(target, voxel_m));
-}
-
-/// Poses from all ways in which the source may stand, until one convinces.
-Finalists best_poses(PoseSearch& search) {
+/// Poses from all ways in which the source may stand, until one convinces; the source is left standing so.
+std::optional<Finalists> best_poses(PoseSearch& search) {
   constexpr double kConvincing = 0.7, kEnough = 50.0;
   std::optional<Finalists> best;
   for (std::size_t stance = 0; stance < search.n_stances(); ++stance) {
@@ -61,10 +36,62 @@ Finalists best_poses(PoseSearch& search) {
     if (poses.empty()) continue;
     Finalists found = finalists_of(search, poses);
     if (!best || found.best.worth.evidence > best->best.worth.evidence) best = std::move(found);
-    if (best->best.worth.score > kConvincing && best->best.worth.support > kEnough) break;
+    if (best->best.worth.score > kConvincing && best->best.worth.support > kEnough) return best;
   }
-  if (!best) throw UnsupportedError("no pose of the source meets the target: the clouds have no shape to match");
-  return *best;
+  if (best) search.stand_as(best->best.local);
+  return best;
+}
+
+/// What one scale gives.
+struct Attempt {
+  double scale = 1.0;
+  PointCloud source;  ///< in the target's units
+  std::unique_ptr<PoseSearch> search;
+  std::optional<Finalists> finalists;
+
+  double evidence() const { return finalists ? finalists->best.worth.evidence : -std::numeric_limits<double>::infinity(); }
+};
+
+Attempt attempt_at(double scale, const PointCloud& source, const PointCloud& target, const GlobalOptions& options) {
+  Attempt attempt{scale, scaled_by(scale, source), nullptr, std::nullopt};
+  const double voxel_m = options.voxel_m.value_or(search_voxel_m(attempt.source, target));
+  attempt.search = std::make_unique<PoseSearch>(attempt.source, target, voxel_m);
+  attempt.finalists = best_poses(*attempt.search);
+  return attempt;
+}
+
+/// Scales to try, the most plausible first: those that give the maps one size, and others around it in steps that the
+/// columns forgive.
+std::vector<double> scales_to_try(const PointCloud& source, const PointCloud& target) {
+  constexpr double kStep = 1.04;
+  constexpr int kSteps = 16;  // a factor of 1.9 each way
+  const double same_size = size_of(target) / size_of(source);
+  if (!(same_size >= kLeastScale && same_size <= kMostScale)) {
+    throw UnsupportedError(fmt::format("the maps' sizes differ by a factor of {:.3g}: scales from {:g} to {:g} are searched",
+                                       same_size, kLeastScale, kMostScale));
+  }
+  std::vector<double> scales{same_size};
+  for (int step = 1; step <= kSteps; ++step) {
+    scales.push_back(same_size * std::pow(kStep, step));
+    scales.push_back(same_size * std::pow(kStep, -step));
+  }
+  return scales;
+}
+
+/// The best attempt of all scales; one that convinces ends the search.
+Attempt best_attempt(const PointCloud& source, const PointCloud& target, const GlobalOptions& options) {
+  constexpr double kConvincing = 0.35, kEnough = 50.0;  // a scale that is 2 % off leaves this much
+  if (!options.with_scale) return attempt_at(1.0, source, target, options);
+  Attempt best;
+  for (const double scale : scales_to_try(source, target)) {
+    Attempt attempt = attempt_at(scale, source, target, options);
+    if (attempt.evidence() > best.evidence()) best = std::move(attempt);
+    if (best.finalists && best.finalists->best.worth.score > kConvincing &&
+        best.finalists->best.worth.support > kEnough) {
+      break;
+    }
+  }
+  return best;
 }
 
 IcpOptions refinement(double voxel_m, double fine_voxel_m, bool with_scale) {
@@ -73,7 +100,7 @@ IcpOptions refinement(double voxel_m, double fine_voxel_m, bool with_scale) {
   options.metric = IcpMetric::kGicp;
   options.with_scale = with_scale;
   options.levels.clear();
-  for (double size_m = 0.5 * voxel_m; size_m > 3.0 * fine_voxel_m; size_m *= 0.5) {
+  for (double size_m = with_scale ? 2.0 * voxel_m : 0.5 * voxel_m; size_m > 3.0 * fine_voxel_m; size_m *= 0.5) {
     options.levels.push_back({size_m, 3.0 * size_m, 50, kMostPoints});
   }
   options.levels.push_back({fine_voxel_m, 10.0 * fine_voxel_m, 50, kMostPoints});
@@ -85,16 +112,25 @@ IcpOptions refinement(double voxel_m, double fine_voxel_m, bool with_scale) {
 Alignment global_registration(const PointCloud& source, const PointCloud& target, const GlobalOptions& options) {
   require_points(source, "source");
   require_points(target, "target");
-  const double voxel_m = options.voxel_m.value_or(search_voxel_m(source, target));
-  const double fine_voxel_m = options.fine_voxel_m.value_or(voxel_m / 8.0);
-  if (!(voxel_m > 0.0) || !(fine_voxel_m > 0.0)) throw UsageError("voxel_m must be above 0");
-  PoseSearch search(source, target, voxel_m);
-  const Finalists finalists = best_poses(search);
-  const Similarity guess = world_transform(finalists.best.local, source.origin, target.origin);
+  if (options.voxel_m && !(*options.voxel_m > 0.0)) throw UsageError("voxel_m must be above 0");
+  if (options.fine_voxel_m && !(*options.fine_voxel_m > 0.0)) throw UsageError("fine_voxel_m must be above 0");
+  Attempt attempt = best_attempt(source, target, options);
+  if (!attempt.finalists) {
+    throw UnsupportedError("no pose of the source meets the target: the clouds have no shape to match");
+  }
+  const double voxel_m = attempt.search->voxel_m();
+  Similarity guess = world_transform(attempt.finalists->best.local, attempt.source.origin, target.origin);
+  guess.scale = attempt.scale;
   Alignment result =
-      icp(source, target, guess.matrix(), refinement(voxel_m, fine_voxel_m, options.with_scale));
+      icp(source, target, guess.matrix(),
+          refinement(voxel_m, options.fine_voxel_m.value_or(voxel_m / 8.0), options.with_scale));
   result.method = "global";
-  result.judgment = judgment_of(finalists, source.origin, target.origin);
+  if (options.with_scale) {
+    result.judgment = judge_alignment(source, target, result);
+  } else {
+    const Similarity local = local_transform(similarity_from(result.T_dst_src), source.origin, target.origin);
+    result.judgment = judgment_of(*attempt.search, local, *attempt.finalists, source.origin, target.origin);
+  }
   return result;
 }
 

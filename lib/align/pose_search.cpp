@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cmap/align/umeyama.hpp"
 #include "cmap/core/error.hpp"
 #include "column_search.hpp"
 #include "upright.hpp"
@@ -39,6 +40,17 @@ Chance chance_among(const std::vector<Agreement>& agreements) {
     chance[k] = std::clamp(agreeing / common, 0.02, 0.98);
   }
   return chance;
+}
+
+/// So that a voxel holds more than one point.
+double wide_enough(const PointCloud& cloud, double voxel_m) {
+  constexpr double kKept = 0.7, kWider = 1.4;
+  constexpr int kTries = 12;
+  for (int i = 0; i < kTries; ++i, voxel_m *= kWider) {
+    const auto n_left = static_cast<double>(thinned_to(cloud, voxel_m).size());
+    if (n_left < kKept * static_cast<double>(cloud.size())) break;
+  }
+  return voxel_m;
 }
 
 IcpOptions refinement_options(double voxel_m, double max_distance_m) {
@@ -156,6 +168,19 @@ Chance PoseSearch::chance_about(const Similarity& local) {
   return field_->chance_about(local, reach_m_, std::max(3.0 * voxel_m_, 6.0 * reach_m_));
 }
 
+Worth PoseSearch::best_worth_of(const JudgedPose& pose, const Chance& chance) {
+  return worth_of(field_->at_best(pose.agreement, reach_m_), chance);
+}
+
+double PoseSearch::possible_support(const Chance& chance) const {
+  double sum = 1e-9;
+  for (std::size_t i = 0; i < field_->size(); ++i) {
+    const WitnessMap::Witness& witness = field_->witness(i);
+    sum += static_cast<double>(witness.weight) * (1.0 - chance[witness.kind]);
+  }
+  return sum;
+}
+
 double PoseSearch::advantage_of(const JudgedPose& pose, const JudgedPose& rival, const Chance& chance) const {
   return advantage(*field_, pose.agreement, rival.agreement, chance);
 }
@@ -170,6 +195,27 @@ double PoseSearch::apart_m(const Similarity& a, const Similarity& b) const {
     farthest = std::max(farthest, (a * p - b * p).norm());
   }
   return farthest;
+}
+
+double size_of(const PointCloud& cloud) {
+  const PairMoments spread = pair_moments(cloud.size(), [&](std::size_t i) {
+    const Eigen::Vector3d p = cloud.positions[i].cast<double>();
+    return WeightedPair{p, p, 1.0};
+  });
+  return std::sqrt(12.0 * spread.scatter_p.trace() / spread.weight);
+}
+
+double search_voxel_m(const PointCloud& source, const PointCloud& target) {
+  constexpr double kVoxelsPerSize = 100.0, kMostVoxelsPerSize = 300.0;
+  const double a = size_of(source), b = size_of(target);
+  const double voxel_m = std::max(std::min(a, b) / kVoxelsPerSize, std::max(a, b) / kMostVoxelsPerSize);
+  return std::max(wide_enough(source, voxel_m), wide_enough(target, voxel_m));
+}
+
+PointCloud scaled_by(double scale, PointCloud cloud) {
+  cloud.origin *= scale;
+  for (Eigen::Vector3f& p : cloud.positions) p *= static_cast<float>(scale);
+  return cloud;
 }
 
 }  // namespace cmap

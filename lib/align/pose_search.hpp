@@ -36,6 +36,10 @@ class PoseSearch {
   JudgedPose judge(const Similarity& local, const Chance& chance);
   /// Of agreement at the reach that poses are judged by.
   Chance chance_about(const Similarity& local);
+  /// What a pose could be worth at most, where it is.
+  Worth best_worth_of(const JudgedPose& pose, const Chance& chance);
+  /// Support if every witness agreed.
+  double possible_support(const Chance& chance) const;
   double advantage_of(const JudgedPose& pose, const JudgedPose& rival, const Chance& chance) const;
 
   /// The farthest that two poses place a point of the source apart, m.
@@ -74,5 +78,15 @@ class PoseSearch {
   std::unique_ptr<AgreementField> field_;
   Refinement coarse_, fine_;
 };
+
+/// The voxel to search with: a hundredth of the smaller map's size, a three hundredth of the larger's at least, and so
+/// wide that a voxel holds more than one point.
+double search_voxel_m(const PointCloud& source, const PointCloud& target);
+
+/// What a box with the same spread would have as its diagonal: blind to a few strays, m.
+double size_of(const PointCloud& cloud);
+
+/// The cloud in units that are this many times smaller, world frame.
+PointCloud scaled_by(double scale, PointCloud cloud);
 
 }  // namespace cmap
