@@ -8,8 +8,8 @@ namespace cmap {
 namespace {
 
 constexpr std::array<double, 3> kLayers{1.5, 4.0, 8.0};
-constexpr int kGroundReach = 6;        ///< cells around a cell that its ground is taken from
-constexpr double kGroundShare = 0.1;   ///< rank of it among their lowest points: below are strays
+constexpr int kGroundReach = 6;       ///< cells around a cell that its ground is taken from
+constexpr double kGroundShare = 0.1;  ///< rank of it among their lowest points: below are strays
 
 /// The chance that a word is not seen again, for reasons that cutting into other cells does not show: noise, occlusion.
 constexpr double kUnlike = 0.2;
@@ -57,8 +57,8 @@ std::uint8_t layer_bit(double above_m, double layer_m) {
 
 }  // namespace
 
-ColumnMap::ColumnMap(std::span<const Eigen::Vector3f> points, const Eigen::Matrix3d& turned, double cell,
-                     double layer, double phase)
+ColumnMap::ColumnMap(std::span<const Eigen::Vector3f> points, const Eigen::Matrix3d& turned, double cell, double layer,
+                     double phase)
     : upright(turned), cell_m(cell), layer_m(layer) {
   const Eigen::Matrix3f R = upright.cast<float>();
   std::vector<Eigen::Vector3f> moved(points.size());

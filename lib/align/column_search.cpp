@@ -16,7 +16,9 @@ constexpr std::size_t kChannels = 5;
 constexpr std::size_t kPeaksPerTurn = 8;
 constexpr int kApartCells = 3;
 constexpr int kApartTurns = 2;
-constexpr std::size_t kSmallestGrid = 32, kLargestGrid = 512;
+constexpr double kTurnsPerCell = 1.1;  ///< half of them, so that the source's rim moves by about a cell
+constexpr int kMostTurns = 240;
+constexpr std::size_t kSmallestGrid = 32, kLargestGrid = 256;
 
 /// The word scores as a sum of few products: scores[a][b] = sum_k sign_k value_k[a] value_k[b], best where words are
 /// frequent.
@@ -122,7 +124,8 @@ class ColumnSearch {
         turned_(source, mirrored),
         channels_(factored(scores, source, target)),
         fourier_(grid_side()),
-        n_turns_(2 * std::max(8, static_cast<int>(std::numbers::pi * 0.35 * std::hypot(source.width, source.height)))) {
+        n_turns_(2 * std::clamp(static_cast<int>(kTurnsPerCell * std::hypot(source.width, source.height)), 8,
+                                kMostTurns / 2)) {
     for (std::size_t k = 0; k < kChannels; ++k) spectra_.push_back(target_spectrum(k));
   }
 
@@ -224,7 +227,8 @@ class ColumnSearch {
     peaks.insert(peaks.end(), found.begin(), found.end());
   }
 
-  /// Where a shift brings the source's center: of the two that the grid cannot tell apart the one that meets the target.
+  /// Where a shift brings the source's center: of the two that the grid cannot tell apart the one that meets the
+  /// target.
   int centered(int shift, int target_cells) const {
     const auto side = static_cast<int>(fourier_.side());
     const int place = shift + turned_.reach();

@@ -49,7 +49,9 @@ struct Attempt {
   std::unique_ptr<PoseSearch> search;
   std::optional<Finalists> finalists;
 
-  double evidence() const { return finalists ? finalists->best.worth.evidence : -std::numeric_limits<double>::infinity(); }
+  double evidence() const {
+    return finalists ? finalists->best.worth.evidence : -std::numeric_limits<double>::infinity();
+  }
 };
 
 Attempt attempt_at(double scale, const PointCloud& source, const PointCloud& target, const GlobalOptions& options) {
@@ -67,8 +69,9 @@ std::vector<double> scales_to_try(const PointCloud& source, const PointCloud& ta
   constexpr int kSteps = 16;  // a factor of 1.9 each way
   const double same_size = size_of(target) / size_of(source);
   if (!(same_size >= kLeastScale && same_size <= kMostScale)) {
-    throw UnsupportedError(fmt::format("the maps' sizes differ by a factor of {:.3g}: scales from {:g} to {:g} are searched",
-                                       same_size, kLeastScale, kMostScale));
+    throw UnsupportedError(
+        fmt::format("the maps' sizes differ by a factor of {:.3g}: scales from {:g} to {:g} are searched", same_size,
+                    kLeastScale, kMostScale));
   }
   std::vector<double> scales{same_size};
   for (int step = 1; step <= kSteps; ++step) {
@@ -121,9 +124,8 @@ Alignment global_registration(const PointCloud& source, const PointCloud& target
   const double voxel_m = attempt.search->voxel_m();
   Similarity guess = world_transform(attempt.finalists->best.local, attempt.source.origin, target.origin);
   guess.scale = attempt.scale;
-  Alignment result =
-      icp(source, target, guess.matrix(),
-          refinement(voxel_m, options.fine_voxel_m.value_or(voxel_m / 8.0), options.with_scale));
+  Alignment result = icp(source, target, guess.matrix(),
+                         refinement(voxel_m, options.fine_voxel_m.value_or(voxel_m / 8.0), options.with_scale));
   result.method = "global";
   if (options.with_scale) {
     result.judgment = judge_alignment(source, target, result);

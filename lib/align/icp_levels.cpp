@@ -64,8 +64,7 @@ Alignment iterate_levels(const PointCloud& source, const PointCloud& target, con
   for (std::size_t i = 0; i < options.levels.size(); ++i) {
     const IcpLevel& settings = options.levels[i];
     LevelMatches level(source, target, T.scale, settings, options.neighbors);
-    const LevelRun run =
-        run_level(level, metric(level), local_transform(T, source.origin, target.origin), options);
+    const LevelRun run = run_level(level, metric(level), local_transform(T, source.origin, target.origin), options);
     result.iterations += run.iterations;
     result.converged = run.converged;
     T = world_transform(run.local, source.origin, target.origin);

@@ -36,9 +36,7 @@ class SourceSurface {
   SourceSurface& operator=(const SourceSurface&) = delete;
 
   /// Of a slot of the level's moving source.
-  Eigen::Vector3d normal(std::size_t slot) const {
-    return surface_.normal(chosen_.empty() ? slot : chosen_[slot]);
-  }
+  Eigen::Vector3d normal(std::size_t slot) const { return surface_.normal(chosen_.empty() ? slot : chosen_[slot]); }
 
  private:
   Bvh index_;

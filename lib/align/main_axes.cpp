@@ -6,7 +6,7 @@
 namespace cmap {
 namespace {
 
-constexpr float kSameAxis = 0.978f;    ///< cosine of 12 degrees
+constexpr float kSameAxis = 0.978f;  ///< cosine of 12 degrees
 constexpr float kDistinct = 0.707f;
 constexpr std::size_t kMostNormals = 2000, kGuesses = 200, kAxes = 3;
 constexpr int kRefinements = 3;

@@ -12,11 +12,11 @@ namespace cmap {
 namespace {
 
 // Lengths in voxels.
-constexpr double kCell = 1.6;        ///< of the columns
-constexpr double kRecut = 0.3;       ///< shift of the second cutting, in cells
-constexpr double kBlock = 5.0;       ///< of the witnesses
+constexpr double kCell = 1.6;   ///< of the columns
+constexpr double kRecut = 0.3;  ///< shift of the second cutting, in cells
+constexpr double kBlock = 5.0;  ///< of the witnesses
 constexpr double kFineVoxel = 0.25;
-constexpr double kCoarseReach = 1.0; ///< for poses from columns, which are this far off
+constexpr double kCoarseReach = 1.0;  ///< for poses that are not settled, which are this far off
 constexpr double kCoarseVoxel = 2.0, kCoarseDistance = 4.0, kFineDistance = 1.5;
 constexpr int kRefinedSteps = 15;
 
@@ -53,6 +53,17 @@ double wide_enough(const PointCloud& cloud, double voxel_m) {
   return voxel_m;
 }
 
+/// The search's cost grows with the cube of the cells that both maps' extents hold: wide maps get wider cells.
+double cell_size_m(const PointCloud& source, const PointCloud& target, double voxel_m) {
+  constexpr double kCellsOfBoth = 150.0, kMostCellsOfBoth = 300.0, kWidest = 2.0;
+  const auto extent_m = [](const PointCloud& cloud) {
+    const Box3d box = bounds(cloud);
+    return (box.max - box.min).norm();
+  };
+  const double both_m = extent_m(source) + extent_m(target), usual_m = kCell * voxel_m;
+  return std::max({usual_m, std::min(both_m / kCellsOfBoth, kWidest * usual_m), both_m / kMostCellsOfBoth});
+}
+
 IcpOptions refinement_options(double voxel_m, double max_distance_m) {
   IcpOptions options;
   options.metric = IcpMetric::kGicp;
@@ -64,9 +75,10 @@ IcpOptions refinement_options(double voxel_m, double max_distance_m) {
 
 }  // namespace
 
-PoseSearch::Stance::Stance(FineMap& fine, const PointCloud& thinned, const Eigen::Matrix3d& upright, double voxel_m)
-    : columns(points_of(thinned), upright, kCell * voxel_m, voxel_m),
-      recut(points_of(thinned), upright, kCell * voxel_m, voxel_m, kRecut),
+PoseSearch::Stance::Stance(FineMap& fine, const PointCloud& thinned, const Eigen::Matrix3d& upright, double cell_m,
+                           double voxel_m)
+    : columns(points_of(thinned), upright, cell_m, voxel_m),
+      recut(points_of(thinned), upright, cell_m, voxel_m, kRecut),
       witnesses(fine, columns, kBlock * voxel_m) {}
 
 PoseSearch::PoseSearch(const PointCloud& source, const PointCloud& target, double voxel_m)
@@ -75,6 +87,7 @@ PoseSearch::PoseSearch(const PointCloud& source, const PointCloud& target, doubl
       reach_m_(kFineVoxel * voxel_m),
       thinned_source_(thinned_to(source, voxel_m)),
       thinned_target_(thinned_to(target, voxel_m)),
+      cell_m_(cell_size_m(thinned_source_, thinned_target_, voxel_m)),
       fine_source_(source, kFineVoxel * voxel_m),
       fine_target_(target, kFineVoxel * voxel_m),
       coarse_{refinement_options(kCoarseVoxel * voxel_m, kCoarseDistance * voxel_m)},
@@ -82,13 +95,13 @@ PoseSearch::PoseSearch(const PointCloud& source, const PointCloud& target, doubl
   const Ups source_ups = ups_of(thinned_source_), target_ups = ups_of(thinned_target_);
   for (const Eigen::Vector3d& up : source_ups.all) source_uprights_.push_back(upright_from(up));
   target_stance_ =
-      std::make_unique<Stance>(fine_target_, thinned_target_, upright_from(target_ups.all.front()), voxel_m_);
+      std::make_unique<Stance>(fine_target_, thinned_target_, upright_from(target_ups.all.front()), cell_m_, voxel_m_);
   stand(std::size_t{0});
 }
 
 void PoseSearch::stand(const Eigen::Matrix3d& upright) {
   field_.reset();
-  source_stance_ = std::make_unique<Stance>(fine_source_, thinned_source_, upright, voxel_m_);
+  source_stance_ = std::make_unique<Stance>(fine_source_, thinned_source_, upright, cell_m_, voxel_m_);
   field_ = std::make_unique<AgreementField>(source_stance_->witnesses, target_stance_->witnesses);
 }
 
@@ -98,8 +111,8 @@ std::vector<JudgedPose> PoseSearch::search(bool mirrored) {
   const RecutColumns both[] = {{source_stance_->columns, source_stance_->recut},
                                {target_stance_->columns, target_stance_->recut}};
   std::vector<Similarity> poses;
-  for (const ColumnPose& pose : search_columns(source_stance_->columns, target_stance_->columns, word_scores(both),
-                                               mirrored, kColumnPoses)) {
+  for (const ColumnPose& pose :
+       search_columns(source_stance_->columns, target_stance_->columns, word_scores(both), mirrored, kColumnPoses)) {
     poses.push_back(pose.local);
   }
   return ranked(poses, kRefinedPoses);
@@ -142,7 +155,7 @@ Similarity PoseSearch::settled(const Similarity& local) {
 std::vector<JudgedPose> PoseSearch::refined(const std::vector<Similarity>& guesses) {
   const std::vector<Similarity> found = run(coarse_, guesses);
   std::vector<Agreement> agreements;
-  for (const Similarity& pose : found) agreements.push_back(field_->at(pose, reach_m_));
+  for (const Similarity& pose : found) agreements.push_back(field_->at(pose, kCoarseReach * voxel_m_));
   const Chance chance = chance_among(agreements);
   std::vector<JudgedPose> judged;
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -189,9 +202,10 @@ double PoseSearch::apart_m(const Similarity& a, const Similarity& b) const {
   const Box3d box = bounds(thinned_source_);
   double farthest = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
-    const Eigen::Vector3d p = Eigen::Vector3d((corner & 1 ? box.max : box.min).x(), (corner & 2 ? box.max : box.min).y(),
-                                              (corner & 4 ? box.max : box.min).z()) -
-                              source_origin_;
+    const Eigen::Vector3d p =
+        Eigen::Vector3d((corner & 1 ? box.max : box.min).x(), (corner & 2 ? box.max : box.min).y(),
+                        (corner & 4 ? box.max : box.min).z()) -
+        source_origin_;
     farthest = std::max(farthest, (a * p - b * p).norm());
   }
   return farthest;

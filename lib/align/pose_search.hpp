@@ -53,7 +53,7 @@ class PoseSearch {
  private:
   /// A map standing upright: its columns twice, cut differently, and its witnesses.
   struct Stance {
-    Stance(FineMap& fine, const PointCloud& thinned, const Eigen::Matrix3d& upright, double voxel_m);
+    Stance(FineMap& fine, const PointCloud& thinned, const Eigen::Matrix3d& upright, double cell_m, double voxel_m);
     ColumnMap columns, recut;
     WitnessMap witnesses;
   };
@@ -72,6 +72,7 @@ class PoseSearch {
   Eigen::Vector3d source_origin_;
   double voxel_m_, reach_m_;
   PointCloud thinned_source_, thinned_target_;
+  double cell_m_;
   FineMap fine_source_, fine_target_;
   std::vector<Eigen::Matrix3d> source_uprights_;
   std::unique_ptr<Stance> source_stance_, target_stance_;

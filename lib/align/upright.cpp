@@ -8,9 +8,9 @@
 namespace cmap {
 namespace {
 
-constexpr double kNearZ = 0.985;     ///< cosine of 10 degrees: a frame's tilt
-constexpr double kLeansFromZ = 0.76; ///< of 40 degrees: slopes and stands
-constexpr double kFrequent = 0.4;    ///< of the most frequent axis's share
+constexpr double kNearZ = 0.985;      ///< cosine of 10 degrees: a frame's tilt
+constexpr double kLeansFromZ = 0.76;  ///< of 40 degrees: slopes and stands
+constexpr double kFrequent = 0.4;     ///< of the most frequent axis's share
 
 std::vector<Eigen::Vector3f> some_normals(const PointCloud& thinned) {
   constexpr std::size_t kNormals = 1500, kPlane = 12;
@@ -40,12 +40,12 @@ Ups ups_of(const PointCloud& thinned) {
   const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
   Ups ups;
   if (axes.empty()) return {true, {z}};
-  const double lean = std::abs(axes[0].direction.z());
-  if (lean > kLeansFromZ) {
-    ups.is_z = true;
-    ups.all.push_back(lean > kNearZ ? (axes[0].direction.z() < 0.0 ? -axes[0].direction : axes[0].direction) : z);
-    return ups;
+  const double lean = axes[0].direction.z();
+  if (std::abs(lean) > kNearZ) {
+    const Eigen::Vector3d up = lean < 0.0 ? (-axes[0].direction).eval() : axes[0].direction;
+    return {true, {up, -up}};
   }
+  if (std::abs(lean) > kLeansFromZ) ups.all.push_back(z);
   for (const MainAxis& axis : axes) {
     if (axis.share < kFrequent * axes[0].share) continue;
     const Eigen::Vector3d up = with_longer_tail(thinned, axis.direction);

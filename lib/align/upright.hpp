@@ -9,7 +9,7 @@ namespace cmap {
 
 /// Which way up a map may be.
 struct Ups {
-  bool is_z = false;                 ///< the frame's own z is plausible: most surfaces face it, or lean from it a little
+  bool is_z = false;                 ///< most surfaces face the frame's own z
   std::vector<Eigen::Vector3d> all;  ///< the most plausible first
 };
 
