@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "cmap/align/umeyama.hpp"
 #include "cmap/core/error.hpp"
+#include "cmap/geometry/order_statistics.hpp"
 #include "column_search.hpp"
 #include "upright.hpp"
 
@@ -20,7 +22,7 @@ constexpr double kCoarseReach = 1.0;  ///< for poses that are not settled, which
 constexpr double kCoarseVoxel = 2.0, kCoarseDistance = 4.0, kFineDistance = 1.5;
 constexpr int kRefinedSteps = 15;
 
-constexpr std::size_t kColumnPoses = 32, kRefinedPoses = 6;
+constexpr std::size_t kColumnPoses = 32, kRefinedPoses = 8;
 constexpr std::size_t kQuickStep = 4;  ///< of the witnesses, for poses from columns
 
 std::span<const Eigen::Vector3f> points_of(const PointCloud& cloud) {
@@ -53,6 +55,24 @@ double wide_enough(const PointCloud& cloud, double voxel_m) {
   return voxel_m;
 }
 
+/// Without what lies far out on an axis, where a few points make a map far larger: a scan's last echoes.
+PointCloud core_of(const PointCloud& thinned) {
+  constexpr std::size_t kTail = 50;  // one in so many, on each side
+  constexpr double kFar = 0.75;      // of the whole extent: where the core is smaller, the tails go
+  Box3d core = bounds(thinned);
+  for (int axis = 0; axis < 3; ++axis) {
+    Array<float> values(thinned.size());
+    for (std::size_t i = 0; i < thinned.size(); ++i) values[i] = thinned.positions[i][axis];
+    const std::size_t tail = values.size() / kTail;
+    const double low = thinned.origin[axis] + static_cast<double>(value_at_rank(values, tail));
+    const double high = thinned.origin[axis] + static_cast<double>(value_at_rank(values, values.size() - 1 - tail));
+    if (high - low > kFar * (core.max[axis] - core.min[axis])) continue;
+    core.min[axis] = low;
+    core.max[axis] = high;
+  }
+  return crop(thinned, core);
+}
+
 /// The search's cost grows with the cube of the cells that both maps' extents hold: wide maps get wider cells.
 double cell_size_m(const PointCloud& source, const PointCloud& target, double voxel_m) {
   constexpr double kCellsOfBoth = 150.0, kMostCellsOfBoth = 300.0, kWidest = 2.0;
@@ -62,6 +82,25 @@ double cell_size_m(const PointCloud& source, const PointCloud& target, double vo
   };
   const double both_m = extent_m(source) + extent_m(target), usual_m = kCell * voxel_m;
   return std::max({usual_m, std::min(both_m / kCellsOfBoth, kWidest * usual_m), both_m / kMostCellsOfBoth});
+}
+
+/// The best by evidence and by support in turn: where scans see different sides of things even a right pose has
+/// evidence against it, and a wrong one may find support all over a wide overlap.
+std::vector<std::size_t> best_by_either(const std::vector<Worth>& worths, std::size_t n_best) {
+  std::vector<std::size_t> by_evidence(worths.size());
+  std::iota(by_evidence.begin(), by_evidence.end(), std::size_t{0});
+  std::vector<std::size_t> by_support = by_evidence;
+  std::stable_sort(by_evidence.begin(), by_evidence.end(),
+                   [&](std::size_t a, std::size_t b) { return worths[a].evidence > worths[b].evidence; });
+  std::stable_sort(by_support.begin(), by_support.end(),
+                   [&](std::size_t a, std::size_t b) { return worths[a].support > worths[b].support; });
+  std::vector<std::size_t> best;
+  for (std::size_t rank = 0; rank < worths.size(); ++rank) {
+    for (const std::size_t i : {by_evidence[rank], by_support[rank]}) {
+      if (best.size() < n_best && std::find(best.begin(), best.end(), i) == best.end()) best.push_back(i);
+    }
+  }
+  return best;
 }
 
 IcpOptions refinement_options(double voxel_m, double max_distance_m) {
@@ -85,8 +124,8 @@ PoseSearch::PoseSearch(const PointCloud& source, const PointCloud& target, doubl
     : source_origin_(source.origin),
       voxel_m_(voxel_m),
       reach_m_(kFineVoxel * voxel_m),
-      thinned_source_(thinned_to(source, voxel_m)),
-      thinned_target_(thinned_to(target, voxel_m)),
+      thinned_source_(core_of(thinned_to(source, voxel_m))),
+      thinned_target_(core_of(thinned_to(target, voxel_m))),
       cell_m_(cell_size_m(thinned_source_, thinned_target_, voxel_m)),
       fine_source_(source, kFineVoxel * voxel_m),
       fine_target_(target, kFineVoxel * voxel_m),
@@ -122,11 +161,10 @@ std::vector<JudgedPose> PoseSearch::ranked(std::vector<Similarity> poses, std::s
   std::vector<Agreement> agreements;
   for (const Similarity& pose : poses) agreements.push_back(field_->at(pose, kCoarseReach * voxel_m_, kQuickStep));
   const Chance chance = chance_among(agreements);
-  std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t i = 0; i < poses.size(); ++i) order.emplace_back(-worth_of(agreements[i], chance).evidence, i);
-  std::sort(order.begin(), order.end());
+  std::vector<Worth> worths;
+  for (const Agreement& agreement : agreements) worths.push_back(worth_of(agreement, chance));
   std::vector<Similarity> best;
-  for (std::size_t i = 0; i < std::min(n_best, order.size()); ++i) best.push_back(poses[order[i].second]);
+  for (const std::size_t i : best_by_either(worths, n_best)) best.push_back(poses[i]);
   return refined(best);
 }
 
@@ -157,12 +195,12 @@ std::vector<JudgedPose> PoseSearch::refined(const std::vector<Similarity>& guess
   std::vector<Agreement> agreements;
   for (const Similarity& pose : found) agreements.push_back(field_->at(pose, kCoarseReach * voxel_m_));
   const Chance chance = chance_among(agreements);
+  std::vector<Worth> worths;
+  for (const Agreement& agreement : agreements) worths.push_back(worth_of(agreement, chance));
   std::vector<JudgedPose> judged;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    judged.push_back({found[i], agreements[i], worth_of(agreements[i], chance)});
+  for (const std::size_t i : best_by_either(worths, found.size())) {
+    judged.push_back({found[i], agreements[i], worths[i]});
   }
-  std::stable_sort(judged.begin(), judged.end(),
-                   [](const JudgedPose& a, const JudgedPose& b) { return a.worth.evidence > b.worth.evidence; });
   std::vector<JudgedPose> distinct;
   for (const JudgedPose& pose : judged) {
     const auto is_apart = [&](const JudgedPose& o) { return apart_m(pose.local, o.local) > distinct_m(); };
