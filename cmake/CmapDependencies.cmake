@@ -32,7 +32,7 @@ foreach(pair "LZF_INCLUDE_DIR;liblzf-dev" "LZF_LIBRARY;liblzf-dev" "FLANN_INCLUD
 endforeach()
 
 # Libraries without which only parts of the product are missing.
-foreach(part RENDER GL IMAGES PCL SIM CERES)
+foreach(part RENDER GL IMAGES SIM CERES)
   set(CMAP_WITH_${part} OFF)
 endforeach()
 if(CMAP_OPTIONAL_LIBRARIES)
@@ -45,7 +45,6 @@ function(cmap_print_summary)
   message(STATUS "  figures      ${CMAP_WITH_RENDER}     apt-get install libvtk9-dev libopencv-imgproc-dev fonts-dejavu-core")
   message(STATUS "  photographs  ${CMAP_WITH_IMAGES}     apt-get install libopencv-imgcodecs-dev")
   message(STATUS "  OpenGL       ${CMAP_WITH_GL}     apt-get install libvtk9-dev libegl-dev libgl-dev libx11-dev")
-  message(STATUS "  global align ${CMAP_WITH_PCL}     apt-get install libpcl-dev")
   message(STATUS "  simulator    ${CMAP_WITH_SIM}     apt-get install libembree-dev libopencv-imgcodecs-dev (Embree 3)")
   message(STATUS "  pose graphs  ${CMAP_WITH_CERES}     apt-get install libceres-dev (2.1 or later)")
   message(STATUS "  tests        ${CMAP_BUILD_TESTS}     -DCMAP_BUILD_TESTS=ON|OFF (libgtest-dev libgmock-dev)")

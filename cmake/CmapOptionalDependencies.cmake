@@ -1,4 +1,4 @@
-# What figures, photographs, OpenGL, global registration, the simulator and pose graphs need; sets CMAP_WITH_* where all of it is
+# What figures, photographs, OpenGL, the simulator and pose graphs need; sets CMAP_WITH_* where all of it is
 # there.
 
 # PCL, a peer in the benchmarks, uses more of VTK than figures do: whoever comes first decides in which folder VTK's
@@ -28,18 +28,6 @@ find_library(CMAP_OPENCV_IMGCODECS_LIBRARY opencv_imgcodecs)
 if(CMAP_OPENCV_INCLUDE_DIR AND CMAP_OPENCV_CORE_LIBRARY AND CMAP_OPENCV_IMGPROC_LIBRARY AND CMAP_OPENCV_IMGCODECS_LIBRARY)
   set(CMAP_WITH_IMAGES ON)
 endif()
-
-# Global registration: optional. PCL's own CMake files would bring in VTK and all its other modules.
-find_path(CMAP_PCL_INCLUDE_DIR pcl/features/fpfh_omp.h PATH_SUFFIXES pcl-1.15 pcl-1.14 pcl-1.13 pcl-1.12)
-set(CMAP_PCL_LIBRARIES)
-set(CMAP_WITH_PCL ON)
-foreach(module features search kdtree octree common)
-  find_library(CMAP_PCL_${module}_LIBRARY pcl_${module})
-  list(APPEND CMAP_PCL_LIBRARIES ${CMAP_PCL_${module}_LIBRARY})
-  if(NOT CMAP_PCL_INCLUDE_DIR OR NOT CMAP_PCL_${module}_LIBRARY)
-    set(CMAP_WITH_PCL OFF)
-  endif()
-endforeach()
 
 # The simulator: optional. Embree casts its rays; it writes photographs.
 find_package(embree 3 QUIET)

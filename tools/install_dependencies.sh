@@ -17,7 +17,7 @@ for argument in "$@"; do
   case "$argument" in
     --all)
       packages+=(libvtk9-dev libopencv-imgproc-dev libopencv-imgcodecs-dev fonts-dejavu-core help2man
-        libegl-dev libgl-dev libx11-dev libpcl-dev libembree-dev libceres-dev)
+        libegl-dev libgl-dev libx11-dev libembree-dev libceres-dev)
       ;;
     --tests)
       packages+=(libgtest-dev libgmock-dev python3 python3-numpy python3-scipy python3-jsonschema libopencv-calib3d-dev ffmpeg chromium
@@ -25,7 +25,7 @@ for argument in "$@"; do
       # Node's own packages bring npm with them and exclude Debian's.
       command -v npm >/dev/null || packages+=(nodejs npm)
       ;;
-    --benchmarks) packages+=(libbenchmark-dev libnanoflann-dev) ;;
+    --benchmarks) packages+=(libbenchmark-dev libnanoflann-dev libpcl-dev) ;;
     -h | --help) sed -n '2,/^set /{/^#/s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"; exit 0 ;;
     *) echo "install_dependencies.sh: unknown argument '$argument'; see --help" >&2; exit 2 ;;
   esac

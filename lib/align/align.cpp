@@ -13,6 +13,7 @@
 #include "cmap/geometry/order_statistics.hpp"
 #include "cmap/io/transform_file.hpp"
 #include "cmap/spatial/k_nearest.hpp"
+#include "judge.hpp"
 
 namespace cmap {
 namespace {
@@ -29,12 +30,17 @@ double extent_m(const PointCloud& cloud, int axis) {
 }
 
 double median_spacing_m(const PointCloud& cloud) {
+  constexpr std::size_t kSample = 20'000;
   const Bvh index(sort_points(cloud));
-  const Array<std::uint32_t> nearest_two = find_k_nearest(index, index.points, 2);
-  Array<double> spacing_m(cloud.size());
-  for (std::size_t slot = 0; slot < cloud.size(); ++slot) {
-    const std::uint32_t other = nearest_two[2 * slot + 1];
-    spacing_m[slot] = other == kNoNeighbor ? 0.0 : (index.points.offset(slot) - index.points.offset(other)).norm();
+  Array<std::uint32_t> slots;
+  for (std::size_t slot = 0; slot < cloud.size(); slot += cloud.size() / kSample + 1) {
+    slots.push_back(static_cast<std::uint32_t>(slot));
+  }
+  const Array<std::uint32_t> nearest_two = find_k_nearest(index, chosen_points(index.points, slots), 2);
+  Array<double> spacing_m(slots.size());
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    const std::uint32_t other = nearest_two[2 * i + 1];
+    spacing_m[i] = other == kNoNeighbor ? 0.0 : (index.points.offset(slots[i]) - index.points.offset(other)).norm();
   }
   return upper_median(spacing_m);
 }
@@ -51,15 +57,19 @@ PointCloud sampled(const PointCloud& cloud, std::size_t most) {
 /// Thinning leaves an error of some share of the voxel. Where both clouds hold the same points, as a copy does, the
 /// points themselves leave none: they are tried, and taken where they come to lie on each other.
 void settle_on_common_points(const PointCloud& source, const PointCloud& target, bool with_scale, Alignment& found) {
-  constexpr std::size_t kSample = 100'000;
+  constexpr std::size_t kSample = 100'000, kFew = 2'000;
   constexpr double kSamePoint = 0.02;  // of the voxel; samples of a surface taken twice are farther apart
   IcpOptions options;
   options.metric = IcpMetric::kPoint;
   options.with_scale = with_scale;
   options.levels = {{0.0, found.voxel_m, 50}};
+  const auto is_copy = [&](const Alignment& settled) {
+    return settled.rmse_m < kSamePoint * found.voxel_m && settled.overlap >= found.overlap - kSamePoint;
+  };
   try {
+    if (!is_copy(icp(sampled(source, kFew), target, found.T_dst_src, options))) return;
     const Alignment settled = icp(sampled(source, kSample), target, found.T_dst_src, options);
-    if (!(settled.rmse_m < kSamePoint * found.voxel_m) || settled.overlap < found.overlap - kSamePoint) return;
+    if (!is_copy(settled)) return;
     found.T_dst_src = settled.T_dst_src;
     found.scale = settled.scale;
     found.rmse_m = settled.rmse_m;
@@ -120,6 +130,7 @@ Alignment align(const PointCloud& source, const PointCloud& target, const Regist
   if (found.voxel_m > 0.0) {
     settle_on_common_points(source, target, options.with_scale || method.scale == ScaleRule::kAlways, found);
   }
+  if (found.judgment.verdict == Verdict::kNotJudged) found.judgment = judge_alignment(source, target, found);
   return found;
 }
 

@@ -23,7 +23,7 @@ constexpr std::array<const char*, 3> kMetricNames{"icp", "plane", "gicp"};
 class MetricSteps {
  public:
   MetricSteps(LevelMatches& level, const IcpOptions& options) : level_(level), options_(options) {
-    if (options.metric == IcpMetric::kGicp) source_surface_.emplace(level.source, options.neighbors);
+    if (options.metric == IcpMetric::kGicp) source_surface_.emplace(level, options.neighbors);
   }
 
   Similarity next(const Similarity& local) const {
@@ -69,7 +69,7 @@ class MetricSteps {
       part.add_plane(m.p - pivot, m.p - m.q, normal, pair_weight);
       return;
     }
-    const Eigen::Vector3d source_normal = local.rotation * source_surface_->surface.normal(slot);
+    const Eigen::Vector3d source_normal = local.rotation * source_surface_->normal(slot);
     const Eigen::Matrix3d covariance =
         2.0 * Eigen::Matrix3d::Identity() -
         (1.0 - kPlaneThickness) * (normal * normal.transpose() + source_normal * source_normal.transpose());
@@ -103,9 +103,13 @@ std::vector<IcpLevel> coarse_to_fine(double voxel_m, double max_distance_m, int 
   return levels;
 }
 
+std::function<NextTransform(LevelMatches&)> icp_metric(const IcpOptions& options) {
+  return metric_of<MetricSteps>(options);
+}
+
 Alignment icp(const PointCloud& source, const PointCloud& target, const Eigen::Matrix4d& T_initial,
               const IcpOptions& options) {
-  Alignment result = iterate_levels(source, target, T_initial, options, metric_of<MetricSteps>(options));
+  Alignment result = iterate_levels(source, target, T_initial, options, icp_metric(options));
   result.method = kMetricNames[static_cast<std::size_t>(options.metric)];
   return result;
 }

@@ -9,24 +9,39 @@
 
 namespace cmap {
 
+/// A level's thinned source: all of it in order of its slots, and the part that takes part.
+struct ThinnedSource {
+  ThinnedSource(const PointCloud& source, double voxel_m, std::size_t most_points);
+
+  PointBlocks all;
+  Array<std::uint32_t> chosen;  ///< slots of `all`; empty: every one
+};
+
 /// What an iteration sees: one level's clouds and the matches at the present transform.
 struct LevelMatches {
   LevelMatches(const PointCloud& source, const PointCloud& target, double scale, const IcpLevel& level, int neighbors);
 
   IcpLevel settings;
+  ThinnedSource thinned;
   MovingSource source;
   RegistrationTarget target;
   NearestField field;
 };
 
-/// Planes through a source's points, in its own frame.
-struct SourceSurface {
-  SourceSurface(const MovingSource& source, int neighbors);
+/// Planes through a level's source, in its own frame.
+class SourceSurface {
+ public:
+  SourceSurface(const LevelMatches& level, int neighbors);
   SourceSurface(const SourceSurface&) = delete;
   SourceSurface& operator=(const SourceSurface&) = delete;
 
-  Bvh index;
-  Surface surface;
+  /// Of a slot of the level's moving source.
+  Eigen::Vector3d normal(std::size_t slot) const { return surface_.normal(chosen_.empty() ? slot : chosen_[slot]); }
+
+ private:
+  Bvh index_;
+  Surface surface_;
+  const Array<std::uint32_t>& chosen_;
 };
 
 /// A source's point at `local`, and the target's nearest: offsets from the target's origin.
@@ -39,6 +54,17 @@ MatchedPoints matched_points(const LevelMatches& level, const Similarity& local,
 
 /// The transform after one more step, from the level's matches at `local`.
 using NextTransform = std::function<Similarity(const Similarity& local)>;
+
+/// The last level's outcome where it stands alone.
+struct LevelRun {
+  Similarity local;
+  int iterations = 0;
+  bool converged = false;
+};
+
+/// Iterates one level from a local transform. Throws UnsupportedError where fewer than 3 points match.
+LevelRun run_level(LevelMatches& level, const NextTransform& next_from, const Similarity& start,
+                   const IcpOptions& options);
 
 /// Iterates level by level, from matches to steps; all that differs is what a step minimizes: `metric` makes a level's
 /// steps (options.metric is not read). Fills everything but the method's name. Throws as icp() does.
@@ -53,6 +79,9 @@ std::function<NextTransform(LevelMatches&)> metric_of(const IcpOptions& options)
     return [steps](const Similarity& local) { return steps->next(local); };
   };
 }
+
+/// The steps of icp() by options.metric; `options` must outlive it.
+std::function<NextTransform(LevelMatches&)> icp_metric(const IcpOptions& options);
 
 /// The equations of all slots, in a fixed order; add(slot, part) adds those of one. Throws UnsupportedError where fewer
 /// than 3 match.

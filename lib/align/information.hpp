@@ -40,6 +40,11 @@ struct Observability {
 };
 Observability observability(const Matrix7d& H, bool with_scale, double lever_m);
 
+/// Standard errors along the axes of the translation's and the rotation's uncertainty, and of the scale where it is
+/// estimated, the worst first: from an information matrix of independent residuals of this variance. Directions without
+/// information are infinitely uncertain.
+std::vector<WeakDirection> standard_errors(const Matrix7d& H, double variance_m2, bool with_scale, double lever_m);
+
 /// Into the result, with a warning where a direction is only weakly determined.
 void tell_observability(const Observability& found, Alignment& result);
 

@@ -1,5 +1,7 @@
 #include "moving_source.hpp"
 
+#include <utility>
+
 #include "cmap/core/parallel.hpp"
 
 namespace cmap {
@@ -47,7 +49,7 @@ Similarity world_transform(const Similarity& local, const Eigen::Vector3d& src_o
   return {local.scale, local.rotation, local.translation + dst_origin - local.linear() * src_origin};
 }
 
-MovingSource::MovingSource(const PointCloud& cloud) : points_(sort_points(cloud)), center_(center_of(points_)) {
+MovingSource::MovingSource(PointBlocks sorted_points) : points_(std::move(sorted_points)), center_(center_of(points_)) {
   moved_.size = points_.size;
   moved_.blocks.resize(points_.blocks.size());
 }

@@ -16,7 +16,8 @@ Similarity world_transform(const Similarity& local, const Eigen::Vector3d& src_o
 /// A source that registrations move again and again: sorted once, as neighbors stay neighbors under similarities.
 class MovingSource {
  public:
-  explicit MovingSource(const PointCloud& cloud);
+  explicit MovingSource(const PointCloud& cloud) : MovingSource(sort_points(cloud)) {}
+  explicit MovingSource(PointBlocks sorted_points);
 
   std::size_t size() const { return points_.size; }
   const PointBlocks& points() const { return points_; }

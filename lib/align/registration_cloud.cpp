@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "cmap/align/umeyama.hpp"
 #include "cmap/core/error.hpp"
 #include "cmap/core/parallel.hpp"
+#include "cmap/geometry/order_statistics.hpp"
 #include "cmap/geometry/voxel_map.hpp"
 
 namespace cmap {
@@ -18,6 +20,10 @@ constexpr std::size_t kNormalChunk = 1024;
 /// Planes, spheres and corridors with noise or curvature look determined to up to this times the variance of their
 /// normals' tilt; rooms, towns and LiDAR scans lose a few percent of their information to it.
 constexpr double kNoiseMargin = 2.0;
+
+/// Variance of a mean of distances to surfaces over that of as many independent ones: neighbors share the target's
+/// planes. Chosen so that simulated pairs scatter as their standard errors say (tests/align/verdict_test.cpp).
+constexpr double kDependence = 1.0;
 
 /// A surface that slides in itself up to normals this noisy (1e-3 rad) determines nothing; up to the second it is weak.
 constexpr double kUndeterminedCondition = 1e-6;
@@ -50,34 +56,67 @@ void RegistrationTarget::fit_surface(const NearestField& field, double max_dista
   surface.fit(matched);
 }
 
-void assess(MovingSource& source, RegistrationTarget& target, const Similarity& local, double max_distance_m,
-            bool with_scale, Alignment& result) {
-  const NearestField field = source.nearest(target.index, local);
-  target.fit_surface(field, max_distance_m);
-  const double sq_max = max_distance_m * max_distance_m;
-  const auto pair_at = [&](std::size_t slot) {
-    return WeightedPair{MovingSource::moved(local, source.points(), slot),
-                        target.index.points.offset(field.slot[slot]).cast<double>(),
-                        field.sq_dist[slot] <= sq_max ? 1.0 : 0.0};
-  };
-  const PairMoments moments = pair_moments(source.size(), pair_at);
-  if (moments.n < 3) fail_no_overlap(moments.n, max_distance_m);
-  const auto information = ordered_sum<NormalEquations>(source.size(), kNormalChunk, [&](std::size_t b, std::size_t e) {
+namespace {
+
+/// What assess() goes through: the matches at a pose.
+struct Matches {
+  const NearestField& field;
+  const PointBlocks& source;
+  const RegistrationTarget& target;
+  const Similarity& local;
+  double sq_max;
+
+  bool is_match(std::size_t slot) const { return field.sq_dist[slot] <= sq_max; }
+  Eigen::Vector3d normal(std::size_t slot) const { return target.surface.normal(field.slot[slot]); }
+  WeightedPair pair(std::size_t slot) const {
+    return {MovingSource::moved(local, source, slot), target.index.points.offset(field.slot[slot]).cast<double>(),
+            is_match(slot) ? 1.0 : 0.0};
+  }
+  double to_surface_m(std::size_t slot) const {
+    const WeightedPair both = pair(slot);
+    return std::abs((both.p - both.q).dot(normal(slot)));
+  }
+};
+
+/// Information of the matches whose distance to the surface is at most this.
+Matrix7d information_of(const Matches& matches, const Eigen::Vector3d& center, double most_m) {
+  const auto sums = ordered_sum<NormalEquations>(matches.source.size, kNormalChunk, [&](std::size_t b, std::size_t e) {
     NormalEquations part;
     for (std::size_t slot = b; slot < e; ++slot) {
-      if (!(field.sq_dist[slot] <= sq_max)) continue;
-      const Eigen::Vector3d normal = target.surface.normal(field.slot[slot]);
-      const Eigen::Vector3d arm = pair_at(slot).p - moments.mean_p;
+      if (!matches.is_match(slot) || matches.to_surface_m(slot) > most_m) continue;
+      const Eigen::Vector3d normal = matches.normal(slot);
+      const Eigen::Vector3d arm = matches.pair(slot).p - center;
       part.add_plane(arm, Eigen::Vector3d::Zero(), normal, 1.0);
       // Without what noise of the normals alone adds: a noisy plane must not seem to hold itself in place.
       const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - normal * normal.transpose();
-      const double noise = kNoiseMargin * target.surface.tilt_variance(field.slot[slot]);
+      const double noise = kNoiseMargin * matches.target.surface.tilt_variance(matches.field.slot[slot]);
       part.add(arm, Eigen::Vector3d::Zero(), across, -noise);
     }
     return part;
   });
+  return sums.H;
+}
+
+/// Spread of the distances to the surface, without those of other things: 1.48 times their median.
+double spread_to_surface_m(const Matches& matches) {
+  Array<double> distances;
+  for (std::size_t slot = 0; slot < matches.source.size; ++slot) {
+    if (matches.is_match(slot)) distances.push_back(matches.to_surface_m(slot));
+  }
+  return 1.4826 * upper_median(distances);
+}
+
+}  // namespace
+
+void assess(MovingSource& source, RegistrationTarget& target, const Similarity& local, double max_distance_m,
+            bool with_scale, Alignment& result) {
+  const NearestField field = source.nearest(target.index, local);
+  target.fit_surface(field, max_distance_m);
+  const Matches matches{field, source.points(), target, local, max_distance_m * max_distance_m};
+  const PairMoments moments = pair_moments(source.size(), [&](std::size_t slot) { return matches.pair(slot); });
+  if (moments.n < 3) fail_no_overlap(moments.n, max_distance_m);
   double sum_sq = 0.0;
-  for (const double sq_dist : field.sq_dist) sum_sq += sq_dist <= sq_max ? sq_dist : 0.0;
+  for (const double sq_dist : field.sq_dist) sum_sq += sq_dist <= matches.sq_max ? sq_dist : 0.0;
   result.n_source = source.size();
   result.n_target = target.index.points.size;
   result.n_matches = moments.n;
@@ -85,9 +124,13 @@ void assess(MovingSource& source, RegistrationTarget& target, const Similarity& 
   result.rmse_m = std::sqrt(sum_sq / static_cast<double>(moments.n));
   (void)fit_similarity(moments, ScaleModel{with_scale, 1.0, 0.0});  // refuses what has no spread
   const double lever_m = std::sqrt(moments.scatter_p.trace() / moments.weight);
-  const Observability found = observability(information.H, with_scale, lever_m);
+  const Matrix7d all = information_of(matches, moments.mean_p, std::numeric_limits<double>::infinity());
+  const Observability found = observability(all, with_scale, lever_m);
   require_observable(found);
   tell_observability(found, result);
+  const double spread_m = spread_to_surface_m(matches);
+  result.standard_errors = standard_errors(information_of(matches, moments.mean_p, 3.0 * spread_m),
+                                           kDependence * spread_m * spread_m, with_scale, lever_m);
 }
 
 bool StepLimits::hold(const Similarity& before, const Similarity& after, const Eigen::Vector3d& center) const {

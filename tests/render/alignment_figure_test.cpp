@@ -60,7 +60,7 @@ TEST(DrawAlignment, IsTheSameForAnyNumberOfThreads) {
 
 TEST(DrawAlignment, NamesThatAreNoPicturesAreRefused) {
   const Case c;
-  const test::TempFolder folder;
+  const testing::TempFolder folder;
   OutputFile file(folder.path() / "picture.txt");
   EXPECT_THROW(write_alignment_figure({c.source, c.target, c.T_initial, c.alignment}, "picture.txt", file), UsageError);
 }

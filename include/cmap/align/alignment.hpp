@@ -29,6 +29,10 @@ struct Alignment {
   double condition = 0.0;
   std::string weakest;  ///< the direction of the smallest eigenvalue: "rotation about (0.00, 0.00, 1.00)"
 
+  /// Of the translation and the rotation along their axes, and the scale where it was estimated, the worst first: from
+  /// the information matrix, the matches' distances to the target's surface, and how far these are from independent.
+  std::vector<WeakDirection> standard_errors;
+
   int iterations = 0;      ///< of all levels
   bool converged = false;  ///< the last level ended before its most iterations
 

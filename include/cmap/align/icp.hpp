@@ -20,6 +20,7 @@ struct IcpLevel {
   double voxel_m = 0.0;         ///< of the thinned source, in the target's units; the target's is half; 0: as they are
   double max_distance_m = 1.0;  ///< farther pairs are no matches
   int max_iterations = 50;
+  std::size_t most_points = 0;  ///< of the thinned source that take part, spread evenly; 0: all
 };
 
 struct IcpOptions {

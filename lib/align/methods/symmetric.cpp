@@ -11,7 +11,7 @@ namespace {
 class SymmetricSteps {
  public:
   SymmetricSteps(LevelMatches& level, const IcpOptions& options)
-      : level_(level), options_(options), source_surface_(level.source, options.neighbors) {}
+      : level_(level), options_(options), source_surface_(level, options.neighbors) {}
 
   Similarity next(const Similarity& local) const {
     level_.target.fit_surface(level_.field, level_.settings.max_distance_m);
@@ -27,7 +27,7 @@ class SymmetricSteps {
     const double max_distance_m = level_.settings.max_distance_m;
     if (distance_m > max_distance_m) return;
     const Eigen::Vector3d normal =
-        mean_normal(local.rotation * source_surface_.surface.normal(slot), level_.target.surface.normal(target_slot));
+        mean_normal(local.rotation * source_surface_.normal(slot), level_.target.surface.normal(target_slot));
     const double width_m = options_.kernel_width * max_distance_m;
     const double weight = robust_weight(options_.kernel, std::abs((p - q).dot(normal)), width_m);
     // Seen from halfway, p turns forth and q back.
