@@ -75,7 +75,7 @@ struct Matches {
 };
 
 /// Information of the matches whose distance to the surface is at most this.
-Matrix7d information_of(const Matches& matches, const Eigen::Vector3d& center, double most_m) {
+Matrix7d information_of(const Matches& matches, const Eigen::Vector3d& center, double most_m, double noise_margin) {
   const auto sums = ordered_sum<NormalEquations>(matches.source.size, kNormalChunk, [&](std::size_t b, std::size_t e) {
     NormalEquations part;
     for (std::size_t slot = b; slot < e; ++slot) {
@@ -85,7 +85,7 @@ Matrix7d information_of(const Matches& matches, const Eigen::Vector3d& center, d
       part.add_plane(arm, Eigen::Vector3d::Zero(), normal, 1.0);
       // Without what noise of the normals alone adds: a noisy plane must not seem to hold itself in place.
       const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - normal * normal.transpose();
-      const double noise = kNoiseMargin * matches.target.surface.tilt_variance(matches.field.slot[slot]);
+      const double noise = noise_margin * matches.target.surface.tilt_variance(matches.field.slot[slot]);
       part.add(arm, Eigen::Vector3d::Zero(), across, -noise);
     }
     return part;
@@ -156,12 +156,12 @@ void assess(MovingSource& source, RegistrationTarget& target, const Similarity& 
   result.rmse_m = std::sqrt(sum_sq / static_cast<double>(moments.n));
   (void)fit_similarity(moments, ScaleModel{with_scale, 1.0, 0.0});  // refuses what has no spread
   const double lever_m = std::sqrt(moments.scatter_p.trace() / moments.weight);
-  const Matrix7d all = information_of(matches, moments.mean_p, std::numeric_limits<double>::infinity());
+  const Matrix7d all = information_of(matches, moments.mean_p, std::numeric_limits<double>::infinity(), kNoiseMargin);
   const Observability found = observability(all, with_scale, lever_m);
   require_observable(found);
   tell_observability(found, result);
   const double spread_m = spread_to_surface_m(matches);
-  result.standard_errors = standard_errors(information_of(matches, moments.mean_p, 3.0 * spread_m),
+  result.standard_errors = standard_errors(information_of(matches, moments.mean_p, 3.0 * spread_m, 1.0),
                                            gradient_variance(matches, moments.mean_p, 3.0 * spread_m), with_scale,
                                            lever_m, farthest_corner_m(matches, moments.mean_p));
 }
