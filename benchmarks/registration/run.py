@@ -41,7 +41,7 @@ def run_cmap(program, folder, options):
     (folder / "a.json").unlink()
     trusted = done.returncode == 0 and result["verdict"] in ("determined", "weak")  # with --option=--allow-unconverged by its verdict
     return {"exit": 0 if trusted else 4, "cpu_s": cpu_s, "T": np.array(result["T_dst_src"]), "judgment": {
-        k: result[k] for k in ("verdict", "reason", "score", "weak")}}
+        k: result[k] for k in ("verdict", "reason", "score", "weak", "standard_errors")}}
 
 
 def run_peer(python, folder, voxel_m):

@@ -78,6 +78,14 @@ void settle_on_common_points(const PointCloud& source, const PointCloud& target,
   }
 }
 
+nlohmann::ordered_json directions_json(const std::vector<WeakDirection>& directions) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const WeakDirection& d : directions) {
+    json.push_back({{"direction", d.name}, {"standard_error_m", d.standard_error_m}});
+  }
+  return json;
+}
+
 void add_judgment(const Judgment& judgment, nlohmann::ordered_json& json) {
   const bool is_judged = judgment.verdict != Verdict::kNotJudged;
   json["verdict"] = name_of(judgment.verdict, verdict_names());
@@ -88,10 +96,7 @@ void add_judgment(const Judgment& judgment, nlohmann::ordered_json& json) {
   for (const RivalPose& rival : judgment.rivals) {
     json["rivals"].push_back({{"T_dst_src", transform_json(rival.T_dst_src)}, {"score", rival.score}});
   }
-  json["weak"] = nlohmann::ordered_json::array();
-  for (const WeakDirection& weak : judgment.weak) {
-    json["weak"].push_back({{"direction", weak.name}, {"standard_error_m", weak.standard_error_m}});
-  }
+  json["weak"] = directions_json(judgment.weak);
 }
 
 }  // namespace
@@ -143,6 +148,7 @@ nlohmann::ordered_json alignment_json(const Alignment& a) {
                               {"iterations", a.iterations}, {"converged", a.converged},
                               {"voxel_m", a.voxel_m},       {"max_distance_m", a.max_distance_m},
                               {"warnings", a.warnings}};
+  json["standard_errors"] = directions_json(a.standard_errors);
   add_judgment(a.judgment, json);
   return json;
 }

@@ -132,6 +132,7 @@ Alignment global_registration(const PointCloud& source, const PointCloud& target
   } else {
     const Similarity local = local_transform(similarity_from(result.T_dst_src), source.origin, target.origin);
     result.judgment = judgment_of(*attempt.search, local, *attempt.finalists, source.origin, target.origin);
+    tell_weak(result, result.judgment);
   }
   return result;
 }

@@ -116,24 +116,28 @@ Observability observability(const Matrix7d& H, bool with_scale, double lever_m) 
   return result;
 }
 
-std::vector<WeakDirection> standard_errors(const Matrix7d& H, double variance_m2, bool with_scale, double lever_m) {
+std::vector<WeakDirection> standard_errors(const Matrix7d& H, const Matrix7d& gradient, bool with_scale, double lever_m,
+                                           double far_m) {
   const Eigensystem eigen = decompose(H, with_scale, lever_m);
   const double least = kUndetermined * std::max(eigen.eigenvalues().maxCoeff(), 1e-300);
-  const Eigen::MatrixXd covariance = variance_m2 * eigen.eigenvectors() *
-                                     eigen.eigenvalues().cwiseMax(least).cwiseInverse().asDiagonal() *
-                                     eigen.eigenvectors().transpose();
+  const Eigen::MatrixXd inverse = eigen.eigenvectors() *
+                                  eigen.eigenvalues().cwiseMax(least).cwiseInverse().asDiagonal() *
+                                  eigen.eigenvectors().transpose();
+  const Vector7d factors = per_meter(lever_m);
+  const Matrix7d scaled = factors.asDiagonal() * gradient * factors.asDiagonal();
+  const Eigen::MatrixXd covariance = inverse * scaled.topLeftCorner(inverse.rows(), inverse.rows()) * inverse;
   std::vector<WeakDirection> errors;
-  const auto add_block = [&](Eigen::Index first, const char* what) {
+  const auto add_block = [&](Eigen::Index first, const char* what, double factor) {
     const Eigen::Matrix3d block = covariance.block<3, 3>(first, first);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(block);
     for (Eigen::Index i = 0; i < 3; ++i) {
-      errors.push_back(
-          {what + direction_text(axes.eigenvectors().col(i)), std::sqrt(std::max(0.0, axes.eigenvalues()[i]))});
+      errors.push_back({what + direction_text(axes.eigenvectors().col(i)),
+                        factor * std::sqrt(std::max(0.0, axes.eigenvalues()[i]))});
     }
   };
-  add_block(0, "rotation about ");
-  add_block(3, "translation along ");
-  if (with_scale) errors.push_back({"scale", std::sqrt(covariance(6, 6))});
+  add_block(0, "rotation about ", far_m / lever_m);
+  add_block(3, "translation along ", 1.0);
+  if (with_scale) errors.push_back({"scale", far_m / lever_m * std::sqrt(covariance(6, 6))});
   std::stable_sort(errors.begin(), errors.end(), [](const WeakDirection& a, const WeakDirection& b) {
     return a.standard_error_m > b.standard_error_m;
   });

@@ -41,9 +41,11 @@ struct Observability {
 Observability observability(const Matrix7d& H, bool with_scale, double lever_m);
 
 /// Standard errors along the axes of the translation's and the rotation's uncertainty, and of the scale where it is
-/// estimated, the worst first: from an information matrix of independent residuals of this variance. Directions without
-/// information are infinitely uncertain.
-std::vector<WeakDirection> standard_errors(const Matrix7d& H, double variance_m2, bool with_scale, double lever_m);
+/// estimated, the worst first: from the information matrix H of a sum of squares and the variance of its gradient.
+/// Directions without information are infinitely uncertain. A rotation's and the scale's are what they move a point
+/// `far_m` away by.
+std::vector<WeakDirection> standard_errors(const Matrix7d& H, const Matrix7d& gradient, bool with_scale, double lever_m,
+                                           double far_m);
 
 /// Into the result, with a warning where a direction is only weakly determined.
 void tell_observability(const Observability& found, Alignment& result);

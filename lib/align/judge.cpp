@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <stdexcept>
 
 #include "cmap/core/error.hpp"
@@ -137,12 +136,16 @@ Judgment judgment_of(PoseSearch& search, const Similarity& local, const Finalist
     judgment.reason = "the mirror image of the source fits and the source does not: one of the two is left-handed";
     judgment.help = "an export with axes of the same hand";
   }
-  if (std::getenv("CMAP_DEBUG_JUDGE")) {
-    judgment.reason =
-        fmt::format("@ {:.3f} {:.1f} {:.0f} {:.2f} {:.3f} {:.3f} {:.3f}", fit.worth.score, fit.worth.support,
-                    fit.worth.evidence, least, fit.explained, fit.relative_8, fit.relative_16);
-  }
   return judgment;
+}
+
+void tell_weak(const Alignment& found, Judgment& judgment) {
+  constexpr double kWeakVoxels = 0.2;  // of the finest level
+  if (judgment.verdict != Verdict::kDetermined) return;
+  for (const WeakDirection& direction : found.standard_errors) {
+    if (direction.standard_error_m > kWeakVoxels * found.voxel_m) judgment.weak.push_back(direction);
+  }
+  if (!judgment.weak.empty()) judgment.verdict = Verdict::kWeak;
 }
 
 Judgment judge_alignment(const PointCloud& source, const PointCloud& target, const Alignment& found) {
@@ -155,6 +158,7 @@ Judgment judge_alignment(const PointCloud& source, const PointCloud& target, con
   Judgment judgment =
       judgment_of(search, local, finalists_of(search, search.search(), &local), scaled.origin, target.origin);
   for (RivalPose& rival : judgment.rivals) rival.T_dst_src.topLeftCorner<3, 3>() *= T.scale;
+  tell_weak(found, judgment);
   return judgment;
 }
 

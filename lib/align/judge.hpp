@@ -32,6 +32,9 @@ Fit fit_at(PoseSearch& search, const Similarity& local);
 Judgment judgment_of(PoseSearch& search, const Similarity& local, const Finalists& finalists,
                      const Eigen::Vector3d& source_origin, const Eigen::Vector3d& target_origin);
 
+/// Directions along which the alignment is so uncertain that it is to be said, into a judgment that it fits.
+void tell_weak(const Alignment& found, Judgment& judgment);
+
 /// The verdict on what a registration from a start found: other poses are searched to compare with.
 Judgment judge_alignment(const PointCloud& source, const PointCloud& target, const Alignment& found);
 

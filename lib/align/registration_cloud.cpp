@@ -21,10 +21,6 @@ constexpr std::size_t kNormalChunk = 1024;
 /// normals' tilt; rooms, towns and LiDAR scans lose a few percent of their information to it.
 constexpr double kNoiseMargin = 2.0;
 
-/// Variance of a mean of distances to surfaces over that of as many independent ones: neighbors share the target's
-/// planes. Chosen so that simulated pairs scatter as their standard errors say (tests/align/verdict_test.cpp).
-constexpr double kDependence = 1.0;
-
 /// A surface that slides in itself up to normals this noisy (1e-3 rad) determines nothing; up to the second it is weak.
 constexpr double kUndeterminedCondition = 1e-6;
 
@@ -79,7 +75,7 @@ struct Matches {
 };
 
 /// Information of the matches whose distance to the surface is at most this.
-Matrix7d information_of(const Matches& matches, const Eigen::Vector3d& center, double most_m) {
+Matrix7d information_of(const Matches& matches, const Eigen::Vector3d& center, double most_m, double noise_margin) {
   const auto sums = ordered_sum<NormalEquations>(matches.source.size, kNormalChunk, [&](std::size_t b, std::size_t e) {
     NormalEquations part;
     for (std::size_t slot = b; slot < e; ++slot) {
@@ -89,12 +85,48 @@ Matrix7d information_of(const Matches& matches, const Eigen::Vector3d& center, d
       part.add_plane(arm, Eigen::Vector3d::Zero(), normal, 1.0);
       // Without what noise of the normals alone adds: a noisy plane must not seem to hold itself in place.
       const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - normal * normal.transpose();
-      const double noise = kNoiseMargin * matches.target.surface.tilt_variance(matches.field.slot[slot]);
+      const double noise = noise_margin * matches.target.surface.tilt_variance(matches.field.slot[slot]);
       part.add(arm, Eigen::Vector3d::Zero(), across, -noise);
     }
     return part;
   });
   return sums.H;
+}
+
+/// Variance of the gradient of half the sum of squares, from how it scatters among patches of neighboring matches:
+/// neighbors share planes and roughness, and are not independent.
+Matrix7d gradient_variance(const Matches& matches, const Eigen::Vector3d& center, double most_m) {
+  constexpr std::size_t kPatch = 64;  // along the curve that the slots follow
+  const auto sums = ordered_sum<NormalEquations>(matches.source.size, kPatch, [&](std::size_t b, std::size_t e) {
+    Vector7d gradient = Vector7d::Zero();
+    NormalEquations patch;
+    for (std::size_t slot = b; slot < e; ++slot) {
+      if (!matches.is_match(slot) || matches.to_surface_m(slot) > most_m) continue;
+      const WeightedPair both = matches.pair(slot);
+      NormalEquations one;
+      one.add_plane(both.p - center, both.p - both.q, matches.normal(slot), 1.0);
+      gradient += one.g;
+    }
+    patch.H = gradient * gradient.transpose();
+    return patch;
+  });
+  return sums.H;
+}
+
+/// From the matches' center to the farthest corner of the moved source's box.
+double farthest_corner_m(const Matches& matches, const Eigen::Vector3d& center) {
+  Eigen::Vector3f low = matches.source.offset(0), high = low;
+  for (std::size_t slot = 1; slot < matches.source.size; ++slot) {
+    low = low.cwiseMin(matches.source.offset(slot));
+    high = high.cwiseMax(matches.source.offset(slot));
+  }
+  double farthest = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3f p((corner & 1 ? high : low).x(), (corner & 2 ? high : low).y(),
+                            (corner & 4 ? high : low).z());
+    farthest = std::max(farthest, (matches.local * p.cast<double>() - center).norm());
+  }
+  return farthest;
 }
 
 /// Spread of the distances to the surface, without those of other things: 1.48 times their median.
@@ -124,13 +156,14 @@ void assess(MovingSource& source, RegistrationTarget& target, const Similarity& 
   result.rmse_m = std::sqrt(sum_sq / static_cast<double>(moments.n));
   (void)fit_similarity(moments, ScaleModel{with_scale, 1.0, 0.0});  // refuses what has no spread
   const double lever_m = std::sqrt(moments.scatter_p.trace() / moments.weight);
-  const Matrix7d all = information_of(matches, moments.mean_p, std::numeric_limits<double>::infinity());
+  const Matrix7d all = information_of(matches, moments.mean_p, std::numeric_limits<double>::infinity(), kNoiseMargin);
   const Observability found = observability(all, with_scale, lever_m);
   require_observable(found);
   tell_observability(found, result);
   const double spread_m = spread_to_surface_m(matches);
-  result.standard_errors = standard_errors(information_of(matches, moments.mean_p, 3.0 * spread_m),
-                                           kDependence * spread_m * spread_m, with_scale, lever_m);
+  result.standard_errors = standard_errors(information_of(matches, moments.mean_p, 3.0 * spread_m, 1.0),
+                                           gradient_variance(matches, moments.mean_p, 3.0 * spread_m), with_scale,
+                                           lever_m, farthest_corner_m(matches, moments.mean_p));
 }
 
 bool StepLimits::hold(const Similarity& before, const Similarity& after, const Eigen::Vector3d& center) const {

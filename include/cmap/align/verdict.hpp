@@ -25,7 +25,7 @@ const EnumNames<Verdict>& verdict_names();
 /// A direction along which an alignment is uncertain.
 struct WeakDirection {
   std::string name;               ///< "translation along (1.00, 0.00, 0.00)"
-  double standard_error_m = 0.0;  ///< of a rotation, or the scale: what it moves a point at the RMS distance by
+  double standard_error_m = 0.0;  ///< of a rotation, or the scale: what it moves the source's farthest corner by
 };
 
 /// Another answer to the same question.

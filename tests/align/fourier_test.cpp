@@ -1,0 +1,36 @@
+#include "fourier.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace cmap {
+namespace fourier_test {
+
+TEST(Fourier, ThereAndBack) {
+  const Fourier2d fourier(32);
+  std::mt19937 random(1);
+  Fourier2d::Grid grid(32 * 32);
+  for (auto& v : grid) v = {static_cast<float>(random() % 100), static_cast<float>(random() % 100)};
+  const Fourier2d::Grid before = grid;
+  fourier.transform(grid);
+  fourier.inverse(grid);
+  for (std::size_t i = 0; i < grid.size(); ++i) EXPECT_LT(std::abs(grid[i] / 1024.0f - before[i]), 1e-4f);
+}
+
+TEST(Fourier, ProductsOfSpectraAreCyclicConvolutions) {
+  const Fourier2d fourier(16);
+  Fourier2d::Grid a(256), b(256);
+  a[3 * 16 + 5] = 2.0f;
+  b[14 * 16 + 12] = 3.0f;
+  fourier.transform(a);
+  fourier.transform(b);
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] *= b[i];
+  fourier.inverse(a);
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i].real() / 256.0f, i == 1 * 16 + 1 ? 6.0f : 0.0f, 1e-4f);
+}
+
+TEST(Fourier, OtherSidesAreRefused) { EXPECT_THROW(Fourier2d(24), std::invalid_argument); }
+
+}  // namespace fourier_test
+}  // namespace cmap
