@@ -3,14 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "cmap/align/align.hpp"
 #include "cmap/align/align_method.hpp"
 #include "cmap/align/tanks_and_temples.hpp"
 #include "cmap/align/trajectory.hpp"
+#include "cmap/align/trajectory_text.hpp"
 #include "cmap/align/trust.hpp"
 #include "cmap/core/execution.hpp"
+#include "cmap/io/number_text.hpp"
 #include "cmap/metrics/metric_options.hpp"
 #include "command_line.hpp"
 #include "files.hpp"
@@ -36,11 +40,12 @@ constexpr const char* kExample =
     "than determined or a little weak, unless --allow-unconverged; 70 internal error.";
 
 struct Arguments {
-  std::string source, target, initial, times, output, json, cloud;
+  std::string source, target, initial, times, time_offset, output, json, cloud;
   cmap::AlignMethod method{AlignKind::kRegistration, &cmap::registration_method("gicp")};
-  cmap::TrajectoryFit fit = cmap::TrajectoryFit::kSim3;
-  double voxel_m = 0.0, max_distance_m = 0.0, tau_m = 0.0, max_gap_s = 0.15;
+  cmap::TrajectoryOptions trajectories;
+  double voxel_m = 0.0, max_distance_m = 0.0, tau_m = 0.0;
   bool scale = false, keep_noise = false, allow_unconverged = false;
+  bool recognized = false;  ///< as trajectories, by what the files hold
   std::vector<std::uint8_t> classes;
   cmap::CommonArguments common;
 
@@ -75,9 +80,16 @@ void add_method_options(cmap::CommandLine& line, Arguments& a) {
   line.add("--max-distance", a.max_distance_m, "M", "farther pairs are no matches [10 voxels]").between(kLeast, kMost);
   line.add_flag("--scale", a.scale, "estimate the scale too, where the method leaves the choice");
   line.add("--tau", a.tau_m, "M", "threshold of tanksandtemples").between(kLeast, kMost);
-  line.add_choice("--fit", a.fit, cmap::trajectory_fit_names(), "NAME",
+  line.add_choice("--fit", a.trajectories.fit, cmap::trajectory_fit_names(), "NAME",
                   "of trajectories: first-frame, se3, sim3 [sim3]");
-  line.add("--max-gap", a.max_gap_s, "S", "poses farther apart are not interpolated between [0.15]")
+  line.add_choice("--pairing", a.trajectories.pairing, cmap::time_pairing_names(), "NAME",
+                  "DST's poses interpolated to SRC's times, or evo's nearest ones [interpolated]");
+  line.add("--max-difference", a.trajectories.max_difference_s, "S", "nearest poses farther apart are no pair [0.01]")
+      .between(kLeast, kMost);
+  line.add("--time-offset", a.time_offset, "S|estimate",
+           "added to SRC's times; estimate: found by speed and turns, and refused where they do not tell it [0]")
+      .not_empty();
+  line.add("--max-gap", a.trajectories.max_gap_s, "S", "poses farther apart are not interpolated between [0.15]")
       .between(kLeast, kMost);
   line.add("--times", a.times, "FILE", "times of poses that have none (KITTI), one number of seconds a line")
       .not_empty();
@@ -86,7 +98,8 @@ void add_method_options(cmap::CommandLine& line, Arguments& a) {
 void add_options(cmap::CommandLine& line, Arguments& a) {
   line.add("SRC", a.source, "FILE", "map or trajectory to move").required();
   line.add("DST", a.target, "FILE", "map or trajectory that stays").required();
-  line.add_choice("--method", a.method, method_names(), "NAME", "one of these [gicp]");
+  line.add_choice("--method", a.method, method_names(), "NAME",
+                  "one of these [gicp; of two files of poses: trajectory]");
   line.add("-o,--output", a.output, "FILE", "transform to write: 4x4 as text").not_empty();
   line.add("--output-cloud", a.cloud, "FILE.ply", "SRC as moved onto DST, to write").not_empty();
   line.add("--json", a.json, "FILE", "everything about the result, to write").not_empty();
@@ -98,12 +111,19 @@ void add_options(cmap::CommandLine& line, Arguments& a) {
   cmap::add_common_options(line, a.common, "no table and no warnings");
 }
 
+constexpr std::array<std::string_view, 6> kOfTrajectories{"--fit",         "--pairing", "--max-difference",
+                                                          "--time-offset", "--max-gap", "--times"};
+
+bool is_of_trajectories(std::string_view option) {
+  return std::ranges::find(kOfTrajectories, option) != kOfTrajectories.end();
+}
+
 /// Whether an option means something for the method; of those that not every method takes, by name.
 bool is_used(std::string_view option, const cmap::AlignMethod& method) {
   const bool of_tanks = method.kind == AlignKind::kTanksAndTemples;
   const bool of_trajectories = method.kind == AlignKind::kTrajectory;
   if (option == "--tau") return of_tanks;
-  if (option == "--fit" || option == "--max-gap" || option == "--times") return of_trajectories;
+  if (is_of_trajectories(option)) return of_trajectories;
   if (option == "--output-cloud" || option == "--keep-noise" || option == "--classes") return !of_trajectories;
   if (option == "--initial") return needs_initial(method);
   if (method.kind != AlignKind::kRegistration) return false;
@@ -114,8 +134,9 @@ bool is_used(std::string_view option, const cmap::AlignMethod& method) {
 
 /// Options that the method would ignore are refused: they do not do what their giver thinks.
 void refuse_unused(const cmap::CommandLine& line, const cmap::AlignMethod& method) {
-  for (const char* option : {"--initial", "--voxel", "--max-distance", "--scale", "--tau", "--fit", "--max-gap",
-                             "--times", "--output-cloud", "--keep-noise", "--classes"}) {
+  for (const char* option :
+       {"--initial", "--voxel", "--max-distance", "--scale", "--tau", "--fit", "--pairing", "--max-difference",
+        "--time-offset", "--max-gap", "--times", "--output-cloud", "--keep-noise", "--classes"}) {
     if (!line.has(option) || is_used(option, method)) continue;
     throw cmap::UsageError(
         fmt::format("{} has no meaning for --method {}", option, name_of(method, cmap::align_method_names())));
@@ -136,18 +157,32 @@ void add_warnings(const std::vector<cmap::Warning>& of_input, cmap::Alignment& a
   alignment.warnings.insert(alignment.warnings.begin(), messages.begin(), messages.end());
 }
 
+cmap::TrajectoryOptions trajectory_options(const Arguments& a) {
+  cmap::TrajectoryOptions options = a.trajectories;
+  options.find_time_offset = a.time_offset == "estimate";
+  if (a.time_offset.empty() || options.find_time_offset) return options;
+  if (!cmap::parse_number(a.time_offset, options.time_offset_s) || !std::isfinite(options.time_offset_s)) {
+    throw cmap::UsageError(fmt::format("--time-offset: {} is neither a number of seconds nor estimate", a.time_offset));
+  }
+  return options;
+}
+
 Result align_trajectories(const Arguments& a) {
   const auto [source, target] = cmap::read_trajectory_pair(a.source, a.target, cmap::path_if_given(a.times));
-  Result result;
+  cmap::TrajectoryAlignment found;
   try {
-    result.alignment = cmap::align_trajectories(source.poses, target.poses, a.fit, a.max_gap_s);
+    found = cmap::align_trajectories(with_repeated(source), with_repeated(target), trajectory_options(a));
   } catch (const cmap::UnsupportedError&) {  // what was said of the inputs may be why
     if (!a.common.quiet) cmap::print_warnings(source.warnings), cmap::print_warnings(target.warnings);
     throw;
   }
-  add_warnings(target.warnings, result.alignment);
-  add_warnings(source.warnings, result.alignment);
-  return result;
+  add_warnings(target.warnings, found);
+  add_warnings(source.warnings, found);
+  if (a.recognized) {
+    found.warnings.insert(found.warnings.begin(),
+                          "both files hold poses: they are aligned as --method trajectory does");
+  }
+  return {found, trajectory_json(found), trajectory_lines(found)};
 }
 
 Result run_tanks_and_temples(const Arguments& a, const cmap::PointCloud& source, const cmap::PointCloud& target,
@@ -235,8 +270,16 @@ void deliver(const Arguments& a, const Result& result) {
   files.commit();
 }
 
-cmap::ExitCode run(const cmap::CommandLine& line, const Arguments& a) {
+/// Files of poses are no clouds: where no method is said, they are aligned as what they are.
+void recognize_trajectories(const cmap::CommandLine& line, Arguments& a) {
+  if (line.has("--method") || !cmap::holds_poses(a.source) || !cmap::holds_poses(a.target)) return;
+  a.method = {AlignKind::kTrajectory};
+  a.recognized = true;
+}
+
+cmap::ExitCode run(const cmap::CommandLine& line, Arguments& a) {
   const cmap::ExecutionScope scope({.threads = a.common.threads});
+  recognize_trajectories(line, a);
   refuse_unused(line, a.method);
   cmap::refuse_overwriting({a.source, a.target, a.initial, a.times}, a.outputs());
   for (const std::string& output : a.outputs()) cmap::require_writable(output);

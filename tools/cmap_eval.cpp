@@ -170,12 +170,12 @@ std::vector<Eigen::Vector3d> sensor_positions(const std::string& path, std::vect
 }
 
 void read_trajectories(const Arguments& a, cmap::ProtocolInputs& inputs) {
-  auto [reference, estimate] =
+  const auto [reference, estimate] =
       cmap::read_trajectory_pair(a.reference_trajectory, a.estimate_trajectory, cmap::path_if_given(a.times));
   append(reference.warnings, inputs.warnings);
   append(estimate.warnings, inputs.warnings);
-  inputs.reference_trajectory = std::move(reference.poses);
-  inputs.estimate_trajectory = std::move(estimate.poses);
+  inputs.reference_trajectory = with_repeated(reference);
+  inputs.estimate_trajectory = with_repeated(estimate);
 }
 
 /// Files that only another option would read are mistakes.

@@ -1,19 +1,39 @@
 #include "cmap/align/trajectory.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "cmap/core/error.hpp"
 #include "information.hpp"
+#include "path_judgment.hpp"
+#include "robust_centers.hpp"
+#include "time_checks.hpp"
 
 namespace cmap {
 namespace {
 
 constexpr std::array<const char*, 3> kFitNames{"trajectory-first-frame", "trajectory-se3", "trajectory-sim3"};
+
+ScaleModel scale_model(TrajectoryFit fit) {
+  return fit == TrajectoryFit::kSim3 ? ScaleModel::free() : ScaleModel::rigid();
+}
+
+std::vector<PosePair> paired(const Trajectory& source, const Trajectory& target, TimePairing pairing,
+                             const TrajectoryOptions& options) {
+  return pairing == TimePairing::kNearest ? pair_nearest(source, target, options.max_difference_s)
+                                          : pair_in_time(source, target, options.max_gap_s);
+}
+
+/// Interpolation takes one pose a time.
+std::size_t n_that_may_pair(const Trajectory& source, TimePairing pairing) {
+  return pairing == TimePairing::kNearest ? source.size() : first_of_each_time(source).size();
+}
 
 Similarity first_frame(const PosePair& pair) {
   Similarity T;
@@ -22,10 +42,30 @@ Similarity first_frame(const PosePair& pair) {
   return T;
 }
 
-PairMoments center_moments(std::span<const PosePair> pairs) {
-  return pair_moments(pairs.size(), [&](std::size_t i) {
-    return WeightedPair{pairs[i].source.position, pairs[i].target.position, 1.0};
-  });
+double rmse_m(std::span<const PosePair> pairs, const Similarity& T) {
+  double sum_sq = 0.0;
+  for (const PosePair& pair : pairs) sum_sq += (T * pair.source.position - pair.target.position).squaredNorm();
+  return std::sqrt(sum_sq / static_cast<double>(pairs.size()));
+}
+
+TrajectoryError trajectory_error(std::span<const PosePair> pairs, TimePairing pairing, TrajectoryFit fit) {
+  const Similarity T =
+      fit == TrajectoryFit::kFirstFrame ? first_frame(pairs.front()) : fit_centers(pairs, scale_model(fit));
+  return {pairing, pairs.size(), rmse_m(pairs, T)};
+}
+
+/// By the other pairing than the one that was asked for.
+std::optional<TrajectoryError> other_error(const Trajectory& source, const Trajectory& target,
+                                           const TrajectoryOptions& options) {
+  const TimePairing other =
+      options.pairing == TimePairing::kNearest ? TimePairing::kInterpolated : TimePairing::kNearest;
+  const std::vector<PosePair> pairs = paired(source, target, other, options);
+  if (pairs.empty()) return std::nullopt;
+  try {
+    return trajectory_error(pairs, other, options.fit);
+  } catch (const UnsupportedError&) {
+    return std::nullopt;  // too few, or in a line
+  }
 }
 
 /// Information of positions: every pair says where its point is.
@@ -40,74 +80,86 @@ void add_observability(std::span<const PosePair> pairs, const Similarity& T, boo
   tell_observability(observability(information.H, with_scale, lever_m), result);
 }
 
-/// Where one trajectory lasts about 1e3, 1e6 or 1e9 times as long as the other, its times are probably no seconds.
-std::string unit_hint(const Trajectory& source, const Trajectory& target) {
-  constexpr std::array<std::pair<double, const char*>, 3> kUnits{
-      {{1e3, "milliseconds"}, {1e6, "microseconds"}, {1e9, "nanoseconds"}}};
-  const double source_s = source.back().time_s - source.front().time_s;
-  const double target_s = target.back().time_s - target.front().time_s;
-  if (!(source_s > 0.0 && target_s > 0.0)) return {};
-  const bool of_source = source_s > target_s;
-  const double ratio = of_source ? source_s / target_s : target_s / source_s;
-  for (const auto& [factor, name] : kUnits) {
-    if (ratio < factor / 4.0 || ratio > factor * 4.0) continue;
-    return fmt::format("; are those of the {} {}?", of_source ? "source" : "target", name);
+/// Leaves out the pairs that do not fit, and says so.
+std::vector<PosePair> leave_out_misfits(std::span<const PosePair> pairs, const RobustCenters& found,
+                                        TrajectoryAlignment& result) {
+  constexpr std::size_t kMostNamed = 10;
+  std::vector<PosePair> fitting;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (found.fits[i] != 0) {
+      fitting.push_back(pairs[i]);
+    } else {
+      result.misfit_times_s.push_back(pairs[i].source.time_s);
+    }
   }
-  return {};
+  const std::vector<double>& times_s = result.misfit_times_s;
+  if (times_s.empty()) return fitting;
+  std::vector<std::string> named;
+  for (const double t : times_s) {
+    if (named.size() < kMostNamed) named.push_back(fmt::format("{:.3f}", t));
+  }
+  result.warnings.push_back(fmt::format(
+      "{} of {} poses {} not fit and {} left out, at {} s{}", times_s.size(), pairs.size(),
+      times_s.size() == 1 ? "does" : "do", times_s.size() == 1 ? "is" : "are", fmt::join(named, ", "),
+      times_s.size() > kMostNamed ? fmt::format(" and {} more", times_s.size() - kMostNamed) : std::string()));
+  return fitting;
 }
 
-void require_common_times(const Trajectory& source, const Trajectory& target, std::size_t n_pairs, double max_gap_s) {
-  if (n_pairs > 0) return;
-  if (source.empty() || target.empty()) throw UnsupportedError("a trajectory without poses cannot be aligned");
-  throw UnsupportedError(fmt::format(
-      "the times do not meet: the source is from {} to {} s, the target from {} to {} s, gaps of at most {} s{}",
-      source.front().time_s, source.back().time_s, target.front().time_s, target.back().time_s, max_gap_s,
-      unit_hint(source, target)));
+/// T, and the pairs that it is from.
+std::vector<PosePair> fit_pairs(const std::vector<PosePair>& pairs, TrajectoryFit fit, Similarity& T,
+                                TrajectoryAlignment& result) {
+  if (fit == TrajectoryFit::kFirstFrame) {
+    T = first_frame(pairs.front());
+    result.condition = 1.0;  // a pose is complete
+    return pairs;
+  }
+  const RobustCenters found = fit_most_centers(pairs, scale_model(fit));
+  T = found.T;
+  std::vector<PosePair> fitting = leave_out_misfits(pairs, found, result);
+  add_observability(fitting, T, fit == TrajectoryFit::kSim3, result);
+  return fitting;
+}
+
+/// With the times as they are.
+TrajectoryAlignment align_at(const Trajectory& source, const Trajectory& target, const TrajectoryOptions& options) {
+  const std::vector<PosePair> pairs = paired(source, target, options.pairing, options);
+  require_pairs(source, target, pairs.size(), options);
+  TrajectoryAlignment result;
+  Similarity T;
+  const std::vector<PosePair> fitting = fit_pairs(pairs, options.fit, T, result);
+  result.method = kFitNames[static_cast<std::size_t>(options.fit)];
+  result.T_dst_src = T.matrix();
+  result.scale = T.scale;
+  result.n_source = n_that_may_pair(source, options.pairing);
+  result.n_target = target.size();
+  result.n_matches = fitting.size();
+  result.overlap = std::min(1.0, static_cast<double>(pairs.size()) / static_cast<double>(result.n_source));
+  result.rmse_m = rmse_m(fitting, T);
+  result.converged = true;
+  result.errors.push_back(trajectory_error(pairs, options.pairing, options.fit));
+  if (const auto other = other_error(source, target, options)) result.errors.push_back(*other);
+  if (options.pairing == TimePairing::kInterpolated) warn_of_gaps(source, target, options.max_gap_s, result.warnings);
+  result.judgment = judge_paths(fitting, T, options.fit);
+  return result;
+}
+
+/// An offset that was found and not asked for is told, not taken.
+void tell_other_offset(const TimeOffsetSearch& search, TrajectoryAlignment& result) {
+  constexpr double kGain = 0.7, kErrors = 3.0, kShortest_s = 1e-3;
+  if (!search.found || result.judgment.verdict == Verdict::kMirrored) return;
+  const TimeOffset& offset = *search.found;
+  const double apart_s = std::abs(offset.offset_s - result.time_offset_s);
+  if (apart_s < std::max(kErrors * offset.standard_error_s, kShortest_s)) return;
+  if (!(offset.rmse_m < kGain * result.rmse_m)) return;
+  result.found_time_offset = offset;
+  const std::string advice = fmt::format("--time-offset {:.4f} would leave an RMSE of {:.3g} m in place of {:.3g} m",
+                                         offset.offset_s, offset.rmse_m, result.rmse_m);
+  result.warnings.push_back(fmt::format("the clocks differ: {} (standard error {:.2g} s); it is not applied", advice,
+                                        offset.standard_error_s));
+  if (!is_trusted(result.judgment.verdict)) result.judgment.help = "the clocks differ: " + advice;
 }
 
 }  // namespace
-
-std::optional<StampedPose> pose_at(const Trajectory& trajectory, double time_s, double max_gap_s) {
-  const auto after = std::lower_bound(trajectory.begin(), trajectory.end(), time_s,
-                                      [](const StampedPose& pose, double t) { return pose.time_s < t; });
-  if (after == trajectory.end()) return std::nullopt;
-  if (after->time_s == time_s) return *after;
-  if (after == trajectory.begin()) return std::nullopt;
-  const StampedPose& before = *(after - 1);
-  const double gap_s = after->time_s - before.time_s;
-  if (gap_s > max_gap_s) return std::nullopt;
-  const double share = (time_s - before.time_s) / gap_s;
-  return StampedPose{time_s, before.position + share * (after->position - before.position),
-                     before.rotation.slerp(share, after->rotation)};
-}
-
-std::string times_of_scans_and_poses(const Capture& capture, double max_gap_s) {
-  return fmt::format("scans from {:.3f} to {:.3f} s, poses from {:.3f} to {:.3f} s, gaps of at most {:g} s",
-                     capture.scans.front().time_s, capture.scans.back().time_s, capture.lio.front().time_s,
-                     capture.lio.back().time_s, max_gap_s);
-}
-
-std::vector<Eigen::Vector3d> scanner_positions(const Capture& capture, double max_gap_s) {
-  std::vector<Eigen::Vector3d> positions;
-  for (const StampedFile& scan : capture.scans) {
-    const auto pose = pose_at(capture.lio, scan.time_s, max_gap_s);
-    if (pose) positions.push_back(pose->position + pose->rotation * capture.calibration.T_imu_lidar.translation());
-  }
-  if (!positions.empty()) return positions;
-  if (capture.lio.empty() || capture.scans.empty()) {
-    throw InputError(fmt::format("{}: scans and LiDAR-inertial poses (lio.tum) are needed", capture.folder.string()));
-  }
-  throw InputError(fmt::format("{}: no scan has a LiDAR-inertial pose (lio.tum) at its time: {}",
-                               capture.folder.string(), times_of_scans_and_poses(capture, max_gap_s)));
-}
-
-std::vector<PosePair> pair_in_time(const Trajectory& source, const Trajectory& target, double max_gap_s) {
-  std::vector<PosePair> pairs;
-  for (const StampedPose& pose : source) {
-    if (const auto there = pose_at(target, pose.time_s, max_gap_s)) pairs.push_back({pose, *there});
-  }
-  return pairs;
-}
 
 Similarity fit_centers(std::span<const PosePair> pairs, const ScaleModel& model) {
   return fit_similarity(center_moments(pairs), model);
@@ -119,31 +171,27 @@ const EnumNames<TrajectoryFit>& trajectory_fit_names() {
   return names;
 }
 
-Alignment align_trajectories(const Trajectory& source, const Trajectory& target, TrajectoryFit fit, double max_gap_s) {
-  const std::vector<PosePair> pairs = pair_in_time(source, target, max_gap_s);
-  require_common_times(source, target, pairs.size(), max_gap_s);
-  const bool with_scale = fit == TrajectoryFit::kSim3;
-  const Similarity T = fit == TrajectoryFit::kFirstFrame
-                           ? first_frame(pairs.front())
-                           : fit_centers(pairs, with_scale ? ScaleModel::free() : ScaleModel::rigid());
-  Alignment result;
-  result.method = kFitNames[static_cast<std::size_t>(fit)];
-  result.T_dst_src = T.matrix();
-  result.scale = T.scale;
-  result.n_source = source.size();
-  result.n_target = target.size();
-  result.n_matches = pairs.size();
-  result.overlap = static_cast<double>(pairs.size()) / static_cast<double>(source.size());
-  double sum_sq = 0.0;
-  for (const PosePair& pair : pairs) sum_sq += (T * pair.source.position - pair.target.position).squaredNorm();
-  result.rmse_m = std::sqrt(sum_sq / static_cast<double>(pairs.size()));
-  if (fit == TrajectoryFit::kFirstFrame) {
-    result.condition = 1.0;  // a pose is complete
-  } else {
-    add_observability(pairs, T, with_scale, result);
+const EnumNames<TimePairing>& time_pairing_names() {
+  static const EnumNames<TimePairing> names{{TimePairing::kInterpolated, "interpolated"},
+                                            {TimePairing::kNearest, "nearest"}};
+  return names;
+}
+
+TrajectoryAlignment align_trajectories(const Trajectory& source, const Trajectory& target,
+                                       const TrajectoryOptions& options) {
+  if (source.empty() || target.empty()) throw UnsupportedError("a trajectory without poses cannot be aligned");
+  if (!options.find_time_offset) {
+    TrajectoryAlignment found = align_at(shifted_in_time(source, options.time_offset_s), target, options);
+    found.time_offset_s = options.time_offset_s;
+    tell_other_offset(find_time_offset(source, target), found);
+    return found;
   }
-  result.converged = true;
-  return result;
+  const TimeOffsetSearch search = find_time_offset(source, target);
+  if (!search.found) throw UnsupportedError("the offset between the clocks is not determined: " + search.reason);
+  TrajectoryAlignment found = align_at(shifted_in_time(source, search.found->offset_s), target, options);
+  found.time_offset_s = search.found->offset_s;
+  found.found_time_offset = search.found;
+  return found;
 }
 
 }  // namespace cmap

@@ -35,14 +35,14 @@ Distinction distinction_of(const std::vector<SavedReport>& reports, const Compar
 }
 
 /// Marks a row by what is distinguishable.
-std::optional<Verdict> rank(TableRow& row, const ScoreKind& kind, Distinction& distinction) {
+std::optional<RankVerdict> rank(TableRow& row, const ScoreKind& kind, Distinction& distinction) {
   return mark_distinguishable(cells_of(row), kind.better,
                               [&](std::size_t a, std::size_t b) { return distinction.verdict(kind, a, b); });
 }
 
 struct RankedScores {
   ScoreTable table;
-  std::vector<std::optional<Verdict>> rankings;  ///< by row
+  std::vector<std::optional<RankVerdict>> rankings;  ///< by row
 };
 
 RankedScores ranked_scores(const ComparisonScores& comparison, Distinction& distinction, bool is_plain) {
@@ -79,7 +79,7 @@ std::optional<TableFormat> table_format(ComparisonFormat format) {
 std::vector<std::string> notes_on_scores(const ComparisonScores& comparison, const RankedScores& ranked,
                                          const Evidence& evidence) {
   RankingCounts counts;
-  for (const std::optional<Verdict>& ranking : ranked.rankings) counts.add(ranking);
+  for (const std::optional<RankVerdict>& ranking : ranked.rankings) counts.add(ranking);
   std::vector<std::string> notes = ranking_notes(counts, evidence);
   for (std::string& note : missing_notes(comparison.names, comparison.scores, comparison.kinds))
     notes.push_back(std::move(note));

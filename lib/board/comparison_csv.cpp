@@ -63,17 +63,17 @@ std::string level_rows(const ComparisonScores& comparison, const ScoreKind& kind
   return text;
 }
 
-const char* ranking_name(const std::optional<Verdict>& ranking) {
+const char* ranking_name(const std::optional<RankVerdict>& ranking) {
   if (!ranking) return "";
-  return *ranking == Verdict::kDistinguishable      ? "distinguishable"
-         : *ranking == Verdict::kNotDistinguishable ? "not distinguishable"
-                                                    : "not tested";
+  return *ranking == RankVerdict::kDistinguishable      ? "distinguishable"
+         : *ranking == RankVerdict::kNotDistinguishable ? "not distinguishable"
+                                                        : "not tested";
 }
 
 }  // namespace
 
 std::string comparison_csv(const ComparisonScores& comparison, const std::optional<std::size_t>& baseline,
-                           const std::vector<std::optional<Verdict>>& rankings) {
+                           const std::vector<std::optional<RankVerdict>>& rankings) {
   const std::size_t n_gains = baseline ? 2 * (comparison.names.size() - 1) : 0;
   const std::string blanks(n_gains + (rankings.empty() ? 0 : 1), ',');
   std::string text = heads(comparison, baseline) + (rankings.empty() ? "" : ",ranking") + "\n";

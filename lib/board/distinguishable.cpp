@@ -58,16 +58,18 @@ std::optional<bool> Distinction::holds_zero(const ScoreKind& kind, std::size_t a
   return interval->lower <= 0.0 && interval->upper >= 0.0;
 }
 
-Verdict Distinction::verdict(const ScoreKind& kind, std::size_t a, std::size_t b) {
+RankVerdict Distinction::verdict(const ScoreKind& kind, std::size_t a, std::size_t b) {
   const Score &of_a = *score_of(*scores_[a], kind), &of_b = *score_of(*scores_[b], kind);
-  if (*of_a.value == *of_b.value) return Verdict::kNotDistinguishable;
-  if (std::isinf(*of_a.value) || std::isinf(*of_b.value)) return Verdict::kDistinguishable;
+  if (*of_a.value == *of_b.value) return RankVerdict::kNotDistinguishable;
+  if (std::isinf(*of_a.value) || std::isinf(*of_b.value)) return RankVerdict::kDistinguishable;
   const std::optional<bool> changes = changes_sign(of_a.phases, of_b.phases), zero = holds_zero(kind, a, b);
   if (changes) evidence_.has_phases = true;
   if (changes || zero) {
-    return changes.value_or(false) || zero.value_or(false) ? Verdict::kNotDistinguishable : Verdict::kDistinguishable;
+    return changes.value_or(false) || zero.value_or(false) ? RankVerdict::kNotDistinguishable
+                                                           : RankVerdict::kDistinguishable;
   }
-  return bootstrap_.lacks_blocks(a) || bootstrap_.lacks_blocks(b) ? Verdict::kNoBootstrap : Verdict::kNoInterval;
+  return bootstrap_.lacks_blocks(a) || bootstrap_.lacks_blocks(b) ? RankVerdict::kNoBootstrap
+                                                                  : RankVerdict::kNoInterval;
 }
 
 std::vector<std::string> ranking_notes(const RankingCounts& counts, const Evidence& evidence) {

@@ -35,7 +35,7 @@ class Distinction {
   Distinction(std::vector<const nlohmann::ordered_json*> reports, std::vector<const std::vector<Score>*> scores);
 
   /// Of maps a and b, which both must have the score's value.
-  Verdict verdict(const ScoreKind& kind, std::size_t a, std::size_t b);
+  RankVerdict verdict(const ScoreKind& kind, std::size_t a, std::size_t b);
   PairedBootstrap& bootstrap() { return bootstrap_; }
 
   /// Of the verdicts so far.

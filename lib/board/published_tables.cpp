@@ -46,7 +46,7 @@ void mark_published(const std::vector<TableCell*>& cells, std::string_view bette
   if (is_plain) {
     mark_best(cells, better);
   } else {
-    mark_distinguishable(cells, better, [](std::size_t, std::size_t) { return Verdict::kNoBootstrap; });
+    mark_distinguishable(cells, better, [](std::size_t, std::size_t) { return RankVerdict::kNoBootstrap; });
   }
 }
 

@@ -12,29 +12,30 @@ namespace {
 struct Leaders {
   std::vector<std::size_t> shared, others;  ///< by rank; the best is the first that shares
   std::vector<std::size_t> look_the_same;   ///< of those that share
-  Verdict verdict = Verdict::kDistinguishable;
+  RankVerdict verdict = RankVerdict::kDistinguishable;
 };
 
 /// `ranked` are indices of cells, the best first.
 Leaders leaders_of(const std::vector<std::size_t>& ranked, const std::vector<TableCell*>& cells,
                    const VerdictOf& verdict_of) {
   Leaders leaders{{ranked.front()}, {}, {ranked.front()}};
-  std::optional<Verdict> untested;
+  std::optional<RankVerdict> untested;
   for (const std::size_t cell : ranked) {
     if (cell == ranked.front()) continue;
     const bool looks_the_same = cells[cell]->text == cells[ranked.front()]->text;
-    const Verdict verdict = looks_the_same ? Verdict::kNotDistinguishable : verdict_of(ranked.front(), cell);
+    const RankVerdict verdict = looks_the_same ? RankVerdict::kNotDistinguishable : verdict_of(ranked.front(), cell);
     if (looks_the_same) leaders.look_the_same.push_back(cell);
-    if (verdict == Verdict::kNoBootstrap || verdict == Verdict::kNoInterval) untested = untested.value_or(verdict);
-    (verdict == Verdict::kNotDistinguishable ? leaders.shared : leaders.others).push_back(cell);
+    if (verdict == RankVerdict::kNoBootstrap || verdict == RankVerdict::kNoInterval)
+      untested = untested.value_or(verdict);
+    (verdict == RankVerdict::kNotDistinguishable ? leaders.shared : leaders.others).push_back(cell);
   }
-  if (leaders.shared.size() > 1) leaders.verdict = Verdict::kNotDistinguishable;
+  if (leaders.shared.size() > 1) leaders.verdict = RankVerdict::kNotDistinguishable;
   leaders.verdict = untested.value_or(leaders.verdict);
   return leaders;
 }
 
-bool is_tested(Verdict verdict) {
-  return verdict == Verdict::kDistinguishable || verdict == Verdict::kNotDistinguishable;
+bool is_tested(RankVerdict verdict) {
+  return verdict == RankVerdict::kDistinguishable || verdict == RankVerdict::kNotDistinguishable;
 }
 
 void mark_all(const std::vector<std::size_t>& chosen, const std::vector<TableCell*>& cells, Mark mark) {
@@ -43,8 +44,8 @@ void mark_all(const std::vector<std::size_t>& chosen, const std::vector<TableCel
 
 }  // namespace
 
-std::optional<Verdict> mark_distinguishable(const std::vector<TableCell*>& cells, std::string_view better,
-                                            const VerdictOf& verdict_of) {
+std::optional<RankVerdict> mark_distinguishable(const std::vector<TableCell*>& cells, std::string_view better,
+                                                const VerdictOf& verdict_of) {
   const std::vector<std::size_t> ranked = ranked_cells(cells, better);
   if (ranked.size() < 2) return std::nullopt;
   const Leaders best = leaders_of(ranked, cells, verdict_of);
@@ -59,7 +60,7 @@ std::optional<Verdict> mark_distinguishable(const std::vector<TableCell*>& cells
   return best.verdict;
 }
 
-void RankingCounts::add(const std::optional<Verdict>& ranking) {
+void RankingCounts::add(const std::optional<RankVerdict>& ranking) {
   if (ranking) ++counts_[static_cast<std::size_t>(*ranking)];
 }
 
@@ -72,14 +73,14 @@ std::string RankingCounts::text(std::string_view how) const {
   for (const std::size_t count : counts_) n += count;
   if (n == 0) return "";
   std::string text =
-      fmt::format("{} of {} ranking{} distinguishable", of(Verdict::kDistinguishable), n, n == 1 ? "" : "s");
+      fmt::format("{} of {} ranking{} distinguishable", of(RankVerdict::kDistinguishable), n, n == 1 ? "" : "s");
   if (!how.empty()) text += fmt::format(" {}", how);
-  const auto add_count = [&](Verdict verdict, const char* what) {
+  const auto add_count = [&](RankVerdict verdict, const char* what) {
     if (of(verdict) > 0) text += fmt::format(", {} {}", of(verdict), what);
   };
-  add_count(Verdict::kNotDistinguishable, "not");
-  add_count(Verdict::kNoBootstrap, "not tested (no --bootstrap)");
-  add_count(Verdict::kNoInterval, "not tested (no interval of the difference)");
+  add_count(RankVerdict::kNotDistinguishable, "not");
+  add_count(RankVerdict::kNoBootstrap, "not tested (no --bootstrap)");
+  add_count(RankVerdict::kNoInterval, "not tested (no interval of the difference)");
   return text;
 }
 

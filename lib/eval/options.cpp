@@ -86,6 +86,12 @@ OptionFields alignment_fields(EvaluationOptions& o) {
                    "score also what an alignment that is not to be trusted gives; else it ends with exit code 4")),
       field("trajectory-fit", o.trajectory_fit, trajectory_fit_names(), "FIT",
             "of trajectories: first-frame, se3 or sim3"),
+      field("trajectory-pairing", o.trajectory_pairing, time_pairing_names(), "PAIRING",
+            "the reference's poses interpolated, or the nearest within 10 ms"),
+      field("trajectory-max-gap", o.trajectory_max_gap_s, kPositive, "SECONDS",
+            "poses farther apart are not interpolated between"),
+      field("trajectory-time-offset", o.trajectory_time_offset_s, kAnyNumber, "SECONDS",
+            "added to the times of the estimate's trajectory; cmap_align --time-offset estimate finds it"),
       field("tanksandtemples-tau", o.tanks_and_temples_tau_m, kPositive, "METERS",
             "its threshold; by default the largest of the thresholds"),
   };

@@ -19,7 +19,12 @@ Alignment align_by_trajectories(const EvaluationOptions& options, const Protocol
   if (!inputs.reference_trajectory || !inputs.estimate_trajectory) {
     throw UsageError("align: \"trajectory\" needs the trajectories of both maps");
   }
-  return align_trajectories(*inputs.estimate_trajectory, *inputs.reference_trajectory, options.trajectory_fit);
+  TrajectoryOptions how;
+  how.fit = options.trajectory_fit;
+  how.pairing = options.trajectory_pairing;
+  how.max_gap_s = options.trajectory_max_gap_s;
+  how.time_offset_s = options.trajectory_time_offset_s.value_or(0.0);
+  return align_trajectories(*inputs.estimate_trajectory, *inputs.reference_trajectory, how);
 }
 
 Alignment align_estimate(const PointCloud& reference, const PointCloud& estimate, const EvaluationOptions& options,

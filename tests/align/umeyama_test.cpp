@@ -230,6 +230,23 @@ TEST(SimilarityTest, ComposesAndInverts) {
   EXPECT_TRUE(similarity_from(a.matrix()).matrix().isApprox(a.matrix(), 1e-14));
 }
 
+TEST(ReflectionCost, IsZeroOfAMirrorImageAndTheFitsOwnOfFlatPoints) {
+  std::mt19937_64 random(1);
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    const Similarity T = test::random_similarity(random, 0.5, 2.0, 5.0);
+    const Points p = random_points(50, seed);
+    Points mirrored = p, flat = p;
+    for (auto& x : mirrored) x.y() *= -1.0;
+    for (auto& x : flat) x.z() = 0.0;
+    const PairMoments image = moments_of(mirrored, moved(p, T));
+    EXPECT_LT(reflection_cost(image, true), 1e-12 * image.sq_q);
+    EXPECT_GT(reflection_cost(moments_of(p, moved(p, T)), true), 0.1 * image.sq_q) << "of no image";
+    const PairMoments plane = moments_of(flat, moved(flat, T, 0.1, seed));
+    const double fit = similarity_cost(plane, ScaleModel::free(), fit_similarity(plane, ScaleModel::free()));
+    EXPECT_NEAR(reflection_cost(plane, true), fit, 1e-9 * plane.sq_q);
+  }
+}
+
 TEST(SimilarityTest, RefusesOtherMatrices) {
   Eigen::Matrix4d mirror = Eigen::Matrix4d::Identity();
   mirror(0, 0) = -1.0;

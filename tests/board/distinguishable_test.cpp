@@ -41,7 +41,7 @@ class Phased {
     for (const auto& of_map : scores_) pointers.push_back(&of_map);
     distinction_.emplace(std::vector<const Json*>(scores.size(), nullptr), pointers);
   }
-  Verdict verdict() { return distinction_->verdict(kind_of("average_wasserstein"), 0, 1); }
+  RankVerdict verdict() { return distinction_->verdict(kind_of("average_wasserstein"), 0, 1); }
   std::string how() const { return distinction_->evidence().how(); }
 
  private:
@@ -54,9 +54,9 @@ Score score(double value, std::optional<Phases> of = {}) {
 }
 
 TEST(Distinction, ByThePhasesOfAGrid) {
-  EXPECT_EQ(Phased({score(1, phases({1, 2})), score(2, phases({2, 3}))}).verdict(), Verdict::kDistinguishable);
-  EXPECT_EQ(Phased({score(1, phases({1, 2})), score(2, phases({2, 1}))}).verdict(), Verdict::kNotDistinguishable);
-  EXPECT_EQ(Phased({score(1, phases({1, 2})), score(2)}).verdict(), Verdict::kNoBootstrap) << "an old report";
+  EXPECT_EQ(Phased({score(1, phases({1, 2})), score(2, phases({2, 3}))}).verdict(), RankVerdict::kDistinguishable);
+  EXPECT_EQ(Phased({score(1, phases({1, 2})), score(2, phases({2, 1}))}).verdict(), RankVerdict::kNotDistinguishable);
+  EXPECT_EQ(Phased({score(1, phases({1, 2})), score(2)}).verdict(), RankVerdict::kNoBootstrap) << "an old report";
   Phased phased({score(1, phases({1, 2})), score(2, phases({2, 3}))});
   EXPECT_EQ(phased.how(), "") << "nothing was asked yet";
   phased.verdict();
@@ -64,10 +64,10 @@ TEST(Distinction, ByThePhasesOfAGrid) {
 }
 
 TEST(Distinction, WhatNeedsNoTest) {
-  EXPECT_EQ(Phased({score(1), score(1)}).verdict(), Verdict::kNotDistinguishable) << "the same value";
-  EXPECT_EQ(Phased({score(INFINITY), score(40)}).verdict(), Verdict::kDistinguishable);
-  EXPECT_EQ(Phased({score(40), score(INFINITY)}).verdict(), Verdict::kDistinguishable);
-  EXPECT_EQ(Phased({score(INFINITY), score(INFINITY)}).verdict(), Verdict::kNotDistinguishable);
+  EXPECT_EQ(Phased({score(1), score(1)}).verdict(), RankVerdict::kNotDistinguishable) << "the same value";
+  EXPECT_EQ(Phased({score(INFINITY), score(40)}).verdict(), RankVerdict::kDistinguishable);
+  EXPECT_EQ(Phased({score(40), score(INFINITY)}).verdict(), RankVerdict::kDistinguishable);
+  EXPECT_EQ(Phased({score(INFINITY), score(INFINITY)}).verdict(), RankVerdict::kNotDistinguishable);
 }
 
 /// 40 x 40 points, 1 m apart, at one height for x below 20 m and another for the rest.
@@ -101,7 +101,7 @@ class Planes {
     }
     return Distinction(std::move(reports), std::move(scores));
   }
-  Verdict verdict(const std::string& metric, std::size_t a, std::size_t b) const {
+  RankVerdict verdict(const std::string& metric, std::size_t a, std::size_t b) const {
     return distinction().verdict(kind_of(metric), a, b);
   }
 
@@ -114,21 +114,21 @@ TEST(Distinction, ByTheIntervalOfThePairedDifference) {
   // The second is 0.125 m worse in every block; the third 0.125 m worse in one half and a little more than that better
   // in the other: whatever blocks are drawn decides.
   const Planes planes({plane(0.25f, 0.25f), plane(0.375f, 0.375f), plane(0.375f, 0.12f)}, 5.0);
-  EXPECT_EQ(planes.verdict("chamfer", 0, 1), Verdict::kDistinguishable);
-  EXPECT_EQ(planes.verdict("chamfer", 1, 0), Verdict::kDistinguishable);
-  EXPECT_EQ(planes.verdict("chamfer", 0, 2), Verdict::kNotDistinguishable);
-  EXPECT_EQ(planes.verdict("chamfer", 2, 0), Verdict::kNotDistinguishable);
-  EXPECT_EQ(planes.verdict("hausdorff", 0, 1), Verdict::kNoInterval) << "a maximum has none";
+  EXPECT_EQ(planes.verdict("chamfer", 0, 1), RankVerdict::kDistinguishable);
+  EXPECT_EQ(planes.verdict("chamfer", 1, 0), RankVerdict::kDistinguishable);
+  EXPECT_EQ(planes.verdict("chamfer", 0, 2), RankVerdict::kNotDistinguishable);
+  EXPECT_EQ(planes.verdict("chamfer", 2, 0), RankVerdict::kNotDistinguishable);
+  EXPECT_EQ(planes.verdict("hausdorff", 0, 1), RankVerdict::kNoInterval) << "a maximum has none";
 }
 
 TEST(Distinction, WithoutBlocksOrWithOthersIsNotTested) {
   Planes planes({plane(0.25f, 0.25f), plane(0.375f, 0.375f)}, 5.0);
   planes.report(1)["intervals"]["blocks"]["block_m"] = 4.0;
-  EXPECT_EQ(planes.verdict("chamfer", 0, 1), Verdict::kNoInterval);
+  EXPECT_EQ(planes.verdict("chamfer", 0, 1), RankVerdict::kNoInterval);
   planes.report(1).erase("intervals");
-  EXPECT_EQ(planes.verdict("chamfer", 0, 1), Verdict::kNoBootstrap);
+  EXPECT_EQ(planes.verdict("chamfer", 0, 1), RankVerdict::kNoBootstrap);
   const Planes one_block({plane(0.25f, 0.25f), plane(0.375f, 0.375f)}, 1000.0);
-  EXPECT_EQ(one_block.verdict("chamfer", 0, 1), Verdict::kNoInterval) << "one block has no spread";
+  EXPECT_EQ(one_block.verdict("chamfer", 0, 1), RankVerdict::kNoInterval) << "one block has no spread";
 }
 
 TEST(RankingNotes, SayWhereIntervalsComeFromFewBlocks) {

@@ -9,15 +9,15 @@
 namespace cmap {
 namespace ranking_test {
 
-constexpr Verdict kApart = Verdict::kDistinguishable, kAlike = Verdict::kNotDistinguishable,
-                  kUntested = Verdict::kNoBootstrap;
+constexpr RankVerdict kApart = RankVerdict::kDistinguishable, kAlike = RankVerdict::kNotDistinguishable,
+                      kUntested = RankVerdict::kNoBootstrap;
 
 /// What is known of pairs; of all others `else_`.
 struct Known {
-  Verdict else_;
-  std::map<std::pair<std::size_t, std::size_t>, Verdict> pairs = {};
+  RankVerdict else_;
+  std::map<std::pair<std::size_t, std::size_t>, RankVerdict> pairs = {};
 
-  Verdict operator()(std::size_t a, std::size_t b) const {
+  RankVerdict operator()(std::size_t a, std::size_t b) const {
     const auto found = pairs.find({std::min(a, b), std::max(a, b)});
     return found == pairs.end() ? else_ : found->second;
   }
@@ -25,7 +25,7 @@ struct Known {
 
 struct Ranked {
   std::string marks;  ///< one sign for each cell
-  std::optional<Verdict> verdict;
+  std::optional<RankVerdict> verdict;
 };
 
 bool operator==(const Ranked& a, const Ranked& b) { return a.marks == b.marks && a.verdict == b.verdict; }
@@ -75,8 +75,8 @@ TEST(MarkDistinguishable, AlikeIsMeasuredAgainstTheBest) {
 
 TEST(MarkDistinguishable, WhatNobodyTestedIsNeverSimplyBest) {
   EXPECT_EQ(ranked({number(2), number(1), number(3)}, Known{kUntested}), (Ranked{".?.", kUntested}));
-  const Known one_untested{kApart, {{{0, 2}, Verdict::kNoInterval}}};
-  EXPECT_EQ(ranked({number(1), number(2), number(3)}, one_untested), (Ranked{"?..", Verdict::kNoInterval}));
+  const Known one_untested{kApart, {{{0, 2}, RankVerdict::kNoInterval}}};
+  EXPECT_EQ(ranked({number(1), number(2), number(3)}, one_untested), (Ranked{"?..", RankVerdict::kNoInterval}));
   const Known second_untested{kApart, {{{1, 2}, kUntested}}};
   EXPECT_EQ(ranked({number(1), number(2), number(3)}, second_untested), (Ranked{"*..", kApart}));
 }
@@ -103,7 +103,7 @@ TEST(RankingCounts, SayHowManyAreDistinguishable) {
   counts.add(kUntested);
   EXPECT_EQ(counts.text(""), "0 of 1 ranking distinguishable, 1 not tested (no --bootstrap)");
   EXPECT_FALSE(counts.has_tested());
-  for (const Verdict verdict : {kApart, kApart, kAlike, Verdict::kNoInterval}) counts.add(verdict);
+  for (const RankVerdict verdict : {kApart, kApart, kAlike, RankVerdict::kNoInterval}) counts.add(verdict);
   EXPECT_TRUE(counts.has_tested());
   EXPECT_EQ(
       counts.text("at 95 %"),

@@ -173,6 +173,16 @@ TEST(TrajectoryFile, OnePoseForEachTime) {
   EXPECT_THAT(only_warning(other), HasSubstr("a row has the time of an earlier row but another pose"));
 }
 
+TEST(TrajectoryFile, WhatIsLeftOutOfATimeIsKept) {
+  const TrajectoryFile file =
+      read_content("3 5 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n3 6 0 0 0 0 0 1\n1 2 0 0 0 0 0 1\n3 7 0 0 0 0 0 1\n");
+  EXPECT_EQ(times_of(file.poses), (std::vector<double>{1, 3}));
+  EXPECT_EQ(times_of(file.repeated), (std::vector<double>{1, 3, 3}));
+  std::vector<double> x;
+  for (const StampedPose& pose : with_repeated(file)) x.push_back(pose.position.x());
+  EXPECT_EQ(x, (std::vector<double>{1, 2, 5, 6, 7})) << "by time, else as in the file";
+}
+
 TEST(TrajectoryFile, UnorderedRowsAreSorted) {
   const TrajectoryFile file = read_content("3 3 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n2 2 0 0 0 0 0 1\n1 7 0 0 0 0 0 1\n");
   EXPECT_EQ(times_of(file.poses), (std::vector<double>{1, 2, 3}));
@@ -317,6 +327,34 @@ TEST(TrajectoryFile, ZeroPosesBetweenOthersAreCounted) {
   poses_of("1" + zero + "2" + zero + "3" + other + "4" + zero);
   poses_of("1" + other + "2 0 0 0 0 0 1 0\n3 0 0 0 0 0 1 0\n");
   poses_of("1" + other + "2 0 0 1 0 0 0 1\n3 0 0 1 0 0 0 1\n");
+}
+
+bool are_poses(std::string_view content) {
+  const TempFolder folder;
+  return holds_poses(folder.write("file.txt", content));
+}
+
+TEST(HoldsPoses, OfNamesTumAndMatrices) {
+  EXPECT_TRUE(are_poses("1 1 2 3 0 0 0.6 0.8\n2 4 5 6 0 0 0.8 0.6\n"));
+  EXPECT_TRUE(are_poses("# timestamp tx ty tz qx qy qz qw\n1 1 2 3 0 0 0.6 0.8\n1 4 5 6 0 0 0.8 0.6\n"));
+  EXPECT_TRUE(
+      are_poses("#timestamp,p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []\n"
+                "1403636580000000000,1,2,3,1,0,0,0\n"));
+  EXPECT_TRUE(are_poses("time,x,y,z,qx,qy,qz,qw\n1,1,2,3,0,0,0,1\n"));
+  EXPECT_TRUE(are_poses("1 0 0 5 0 1 0 6 0 0 1 7\n0 -1 0 5 1 0 0 6 0 0 1 7\n")) << "KITTI";
+}
+
+TEST(HoldsPoses, NotOfPointsWhateverTheirColumns) {
+  EXPECT_FALSE(are_poses("0 1 2 3 0 0 1 0\n1 4 5 6 0 1 0 0.01\n")) << "x that rises, a normal and a curvature";
+  EXPECT_FALSE(are_poses("0 1 2 255 0 0 1 0\n1 4 5 0 12 9 1 3\n"));
+  EXPECT_FALSE(are_poses("x y z r g b a t\n1 2 3 4 5 6 7 8\n"));
+  EXPECT_FALSE(are_poses("timestamp,x,y,z,intensity\n1,1,2,3,4\n")) << "a sensor's viewer";
+  EXPECT_FALSE(are_poses("1 2 3\n4 5 6\n"));
+  EXPECT_FALSE(are_poses("ply\nformat ascii 1.0\nend_header\n"));
+  EXPECT_FALSE(are_poses(""));
+  EXPECT_FALSE(are_poses("words\n"));
+  EXPECT_FALSE(holds_poses("/none/such.tum"));
+  EXPECT_FALSE(holds_poses("/tmp")) << "a folder";
 }
 
 TEST(TrajectoryFile, TumWrittenAndReadBackIsIdentical) {

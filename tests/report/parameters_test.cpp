@@ -17,7 +17,11 @@ struct Schema {
   const OptionField& field;
 
   Json operator()(const NumberValue&) const { return definition("positive"); }
-  Json operator()(const OptionalNumberValue&) const { return {{"type", {"number", "null"}}, {"exclusiveMinimum", 0}}; }
+  Json operator()(const OptionalNumberValue& v) const {
+    Json schema{{"type", {"number", "null"}}};
+    if (v.range.above_low) schema["exclusiveMinimum"] = v.range.low;
+    return schema;
+  }
   Json operator()(const CountValue& v) const {
     return v.range.least == 0 ? definition("count") : Json{{"type", "integer"}, {"minimum", v.range.least}};
   }

@@ -184,6 +184,10 @@ CHECKS = {
     "cmap_align est.ply ref.ply --method tanksandtemples": [says("precision", "recall", "F ")],
     "cmap_align odometry.tum truth.tum --method trajectory": [transform("T.txt")],
     "cmap_align poses.txt truth.csv --method trajectory": [transform("T.txt")],
+    "cmap_align odometry.tum truth.tum --pairing nearest": [
+        says("ATE .*40 pairs, nearest"), reports("result.json", lambda r: r["ate"][0]["pairing"] == "nearest")
+    ],
+    "cmap_align odometry.tum truth.tum --time-offset": [transform("T.txt")],
     "cmap_align est.ply ref.ply --output-cloud": [holds("moved.ply")],
     "cmap_simulate small_town -o capture": [makes("capture/capture.json", "capture/truth/map.ply")],
     "cmap_simulate town -o capture": [makes("capture/capture.json")],
@@ -268,7 +272,8 @@ def write_trajectories(folder):
     truth, odometry, poses, csv, times = [], [], [], [], []
     for i in range(40):
         t, angle = 1403636580.0 + 0.1 * i, 0.1 * i
-        x, y, z = 8 + 4 * np.cos(angle), 8 + 4 * np.sin(angle), 1.5 + 0.2 * np.sin(3 * angle)
+        radius = 4 + 0.4 * angle  # a circle looks the same at any time
+        x, y, z = 8 + radius * np.cos(angle), 8 + radius * np.sin(angle), 1.5 + 0.2 * np.sin(3 * angle)
         q = f"0 0 {np.sin(angle / 2):.9f} {np.cos(angle / 2):.9f}"
         truth.append(f"{t:.3f} {x:.6f} {y:.6f} {z:.6f} {q}")
         odometry.append(f"{t:.3f} {x + 0.03:.6f} {y - 0.02:.6f} {z + 0.01:.6f} {q}")

@@ -14,4 +14,10 @@ enum class TrajectoryFit {
 /// "first-frame", "se3", "sim3".
 const EnumNames<TrajectoryFit>& trajectory_fit_names();
 
+/// Which poses of two trajectories belong together; see pose_pairs.hpp.
+enum class TimePairing { kInterpolated, kNearest };
+
+/// "interpolated", "nearest".
+const EnumNames<TimePairing>& time_pairing_names();
+
 }  // namespace cmap

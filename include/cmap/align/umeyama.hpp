@@ -40,7 +40,12 @@ Similarity fit_similarity(const PairMoments& moments, const ScaleModel& model);
 /// J of any similarity.
 double similarity_cost(const PairMoments& moments, const ScaleModel& model, const Similarity& T);
 
-/// The same for points given as lists; `weights` empty means 1 for all. Throws std::invalid_argument where lengths
+/// The least J of all reflections (det R = -1), each with its best t and, where it is free, s; lambda = 0. It is below
+/// that of fit_similarity() where one of the two point sets is the other's mirror image, and the same where they are
+/// flat.
+double reflection_cost(const PairMoments& moments, bool scale_is_free);
+
+/// The minimizer for points given as lists; `weights` empty means 1 for all. Throws std::invalid_argument where lengths
 /// differ or a weight is negative or not finite.
 Similarity umeyama(std::span<const Eigen::Vector3d> p, std::span<const Eigen::Vector3d> q,
                    const ScaleModel& model = ScaleModel::free(), std::span<const double> weights = {});

@@ -42,6 +42,9 @@ struct EvaluationOptions : MetricOptions {
   bool align_scale = false;
   bool allow_unconverged = false;  ///< score an alignment that is not to be trusted all the same
   TrajectoryFit trajectory_fit = TrajectoryFit::kSim3;
+  TimePairing trajectory_pairing = TimePairing::kInterpolated;
+  double trajectory_max_gap_s = 0.15;
+  std::optional<double> trajectory_time_offset_s;
   std::optional<double> tanks_and_temples_tau_m;
   bool sensitivity = false;
   double sensitivity_translation_m = 0.01;

@@ -17,7 +17,11 @@ struct TrajectoryFile {
   bool has_times = true;          ///< false: the file holds none, and time_s is the index of the row
   std::size_t rows = 0;           ///< of poses in the file, those left out too
   std::vector<Warning> warnings;  ///< each names the file
+  Trajectory repeated;            ///< left out, as their times were there: by time, else in the file's order
 };
+
+/// All poses that have a time, with those of repeated times after the first of theirs.
+Trajectory with_repeated(const TrajectoryFile& file);
 
 /// Reads a trajectory in any of these layouts, told apart by what the file holds; one pose a line, separated by blanks,
 /// commas or semicolons, `#` comments:
@@ -34,6 +38,11 @@ struct TrajectoryFile {
 /// what is no number, commas that may be decimal ones, no rotation (beyond 1e-3), no pose, files that are something
 /// else. Thread-safe.
 TrajectoryFile read_trajectory(const std::filesystem::path& path);
+
+/// Whether a file on disk holds a trajectory and no point cloud, by its first rows: columns named as a time, a position
+/// and a quaternion; rows of TUM's layout with times that rise and unit quaternions that are no normals; matrices.
+/// Never throws: what cannot be read is none.
+bool holds_poses(const std::filesystem::path& path);
 
 /// Two trajectories to be paired by time. `times`, a file with one time a line for each pose, are those of whichever
 /// holds none. Where neither does and none are given, both must have as many rows: they are paired row by row, with a

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "poses/trajectory_order.hpp"
 #include "poses/trajectory_rows.hpp"
@@ -51,7 +53,7 @@ void set_times(TrajectoryRows& rows, const std::string& name, const std::filesys
 }
 
 TrajectoryFile finish(TrajectoryRows rows, const std::string& name) {
-  TrajectoryFile file{{}, rows.has_times, rows.n_rows, {}};
+  TrajectoryFile file{{}, rows.has_times, rows.n_rows, {}, {}};
   if (rows.poses.empty()) {
     throw InputError(fmt::format("{}: none of its {} rows is a pose: {} not finite, {} with a quaternion of zero", name,
                                  rows.n_rows, rows.n_not_finite, rows.n_zero_rotation));
@@ -69,7 +71,7 @@ TrajectoryFile finish(TrajectoryRows rows, const std::string& name) {
                              name + ": no header line names the columns: the quaternion is read as x y z w, as in TUM "
                                     "files; EuRoC's have w first"});
   }
-  put_in_order(file.poses, name, file.warnings);
+  file.repeated = put_in_order(file.poses, name, file.warnings);
   return file;
 }
 
@@ -84,6 +86,13 @@ TrajectoryRows read_rows_of(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+Trajectory with_repeated(const TrajectoryFile& file) {
+  Trajectory all;
+  std::merge(file.poses.begin(), file.poses.end(), file.repeated.begin(), file.repeated.end(), std::back_inserter(all),
+             [](const StampedPose& a, const StampedPose& b) { return a.time_s < b.time_s; });
+  return all;
+}
 
 TrajectoryFile parse_trajectory(ByteSource& source) { return finish(read_trajectory_rows(source), source.name()); }
 

@@ -74,7 +74,7 @@ void warn_of_zero_poses(const Trajectory& poses, const std::string& name, std::v
                    name, n, poses.size())});
 }
 
-void put_in_order(Trajectory& poses, const std::string& name, std::vector<Warning>& warnings) {
+Trajectory put_in_order(Trajectory& poses, const std::string& name, std::vector<Warning>& warnings) {
   const auto earlier = [](const StampedPose& a, const StampedPose& b) { return a.time_s < b.time_s; };
   std::size_t n_late = 0;
   for (std::size_t i = 1; i < poses.size(); ++i) n_late += earlier(poses[i], poses[i - 1]);
@@ -85,9 +85,11 @@ void put_in_order(Trajectory& poses, const std::string& name, std::vector<Warnin
                                              name, n_late, plural(n_late, "row is", "rows are"))});
   }
   std::size_t n_repeated = 0, n_other = 0, n_kept = 0;
+  Trajectory left_out;
   for (const StampedPose& pose : poses) {
     if (n_kept > 0 && pose.time_s == poses[n_kept - 1].time_s) {
       ++(same_pose(pose, poses[n_kept - 1]) ? n_repeated : n_other);
+      left_out.push_back(pose);
     } else {
       poses[n_kept++] = pose;
     }
@@ -106,6 +108,7 @@ void put_in_order(Trajectory& poses, const std::string& name, std::vector<Warnin
                      n_other == 1 ? std::string("a row has") : fmt::format("{} rows have", n_other),
                      plural(n_other, "is", "are"))});
   }
+  return left_out;
 }
 
 }  // namespace cmap

@@ -17,7 +17,8 @@ double times_to_seconds(Trajectory& poses, double units_per_s, const std::string
 /// tracking was lost. Those before the first other pose are a start, and one alone may be a return.
 void warn_of_zero_poses(const Trajectory& poses, const std::string& name, std::vector<Warning>& warnings);
 
-/// Sorts poses by time and leaves out all but the first of each time, with warnings. The result is a Trajectory.
-void put_in_order(Trajectory& poses, const std::string& name, std::vector<Warning>& warnings);
+/// Sorts poses by time and leaves out all but the first of each time, with warnings. What is left out is returned, by
+/// time, else in the file's order.
+Trajectory put_in_order(Trajectory& poses, const std::string& name, std::vector<Warning>& warnings);
 
 }  // namespace cmap
