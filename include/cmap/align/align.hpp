@@ -48,8 +48,8 @@ const RegistrationMethod& registration_method(std::string_view name);
 /// Aligns a source map to a target map: one door to all methods. Units are meters; the clouds
 /// may lie anywhere. Thread-safe; bitwise the same for any number of threads. Throws UnsupportedError where the
 /// alignment cannot be determined (no overlap; a plane, line, sphere or corridor, saying which direction is free;
-/// T_initial no similarity) and for `global` in a build without PCL, UsageError for wrong options,
-/// std::invalid_argument on an empty cloud.
+/// T_initial no similarity), UsageError for wrong options, std::invalid_argument on an empty cloud. Every result
+/// carries a judgment: other poses, and the source's mirror image, are searched to compare with.
 Alignment align(const PointCloud& source, const PointCloud& target, const RegistrationMethod& method,
                 const AlignOptions& options = {}, const Execution& execution = {});
 
