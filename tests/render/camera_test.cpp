@@ -108,7 +108,7 @@ TEST(BoxToShow, LeavesOutOutliersButNotThePoint) {
 }
 
 Camera camera_in(const std::string& json) {
-  const auto path = std::filesystem::path(testing::TempDir()) / "camera.json";
+  const auto path = std::filesystem::path(::testing::TempDir()) / "camera.json";
   std::ofstream(path) << json;
   return read_camera(path);
 }
