@@ -7,6 +7,7 @@
 #include "cmap/align/umeyama.hpp"
 #include "cmap/core/error.hpp"
 #include "cmap/geometry/order_statistics.hpp"
+#include "cmap/geometry/voxel_map.hpp"
 #include "column_search.hpp"
 #include "upright.hpp"
 
@@ -53,6 +54,34 @@ double wide_enough(const PointCloud& cloud, double voxel_m) {
     if (n_left < kKept * static_cast<double>(cloud.size())) break;
   }
   return voxel_m;
+}
+
+/// Without points that have next to nothing around them. One stray in a hundred points of a dense map is one in ten of
+/// the thinned one, and stands as tall as a house.
+PointCloud without_strays(const PointCloud& thinned, double voxel_m) {
+  constexpr double kCellVoxels = 2.0;
+  constexpr int kFewest = 4;  // with its own, in the cells around; a surface has some thirty
+  const VoxelFrame frame(bounds(thinned), kCellVoxels * voxel_m);
+  std::vector<VoxelKey> key_of;
+  VoxelMap<int> counts;
+  for (const Eigen::Vector3f& p : thinned.positions) {
+    key_of.push_back(frame.key(Eigen::Vector3d(thinned.origin + p.cast<double>())));
+    ++counts[key_of.back()];
+  }
+  const auto n_around = [&](const VoxelKey& key) {
+    int n = 0;
+    for (int i = 0; i < 27; ++i) {
+      const int* count = counts.find({key.x + i / 9 - 1, key.y + i / 3 % 3 - 1, key.z + i % 3 - 1});
+      n += count == nullptr ? 0 : *count;
+    }
+    return n;
+  };
+  PointCloud kept;
+  kept.origin = thinned.origin;
+  for (std::size_t i = 0; i < thinned.size(); ++i) {
+    if (n_around(key_of[i]) >= kFewest) kept.positions.push_back(thinned.positions[i]);
+  }
+  return kept.positions.empty() ? thinned : kept;
 }
 
 /// Without what lies far out on an axis, where a few points make a map far larger: a scan's last echoes.
@@ -124,8 +153,8 @@ PoseSearch::PoseSearch(const PointCloud& source, const PointCloud& target, doubl
     : source_origin_(source.origin),
       voxel_m_(voxel_m),
       reach_m_(kFineVoxel * voxel_m),
-      thinned_source_(core_of(thinned_to(source, voxel_m))),
-      thinned_target_(core_of(thinned_to(target, voxel_m))),
+      thinned_source_(core_of(without_strays(thinned_to(source, voxel_m), voxel_m))),
+      thinned_target_(core_of(without_strays(thinned_to(target, voxel_m), voxel_m))),
       cell_m_(cell_size_m(thinned_source_, thinned_target_, voxel_m)),
       fine_source_(source, kFineVoxel * voxel_m),
       fine_target_(target, kFineVoxel * voxel_m),

@@ -132,14 +132,9 @@ TEST(Symmetric, TakesFewerStepsThanPlanesOnCurvedSurfaces) {
   EXPECT_LT(upper_median(steps), upper_median(steps_of_planes));
 }
 
-PointCloud sample_town(const char* name) {
-  const std::filesystem::path source = std::getenv("CMAP_SOURCE_DIR");  // set by CTest
-  return read_point_cloud(source / "data_samples/town" / name).cloud;
-}
-
 /// Starts far enough that some fail: 34 degrees and 4.8 m in a town of 35 m.
 TEST(Symmetric, ConvergesInATownWherePlanesDo) {
-  const PointCloud source = sample_town("estimate.ply"), target = sample_town("reference.ply");
+  const PointCloud source = test::sample_town("estimate.ply"), target = test::sample_town("reference.ply");
   constexpr double kThere = 0.5;  // m; the estimate's own drift is some centimeters
   int of_planes = 0;
   for (unsigned seed = 100; seed < 116; ++seed) {

@@ -3,10 +3,19 @@
 // A town for the tests of registrations.
 
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 
+#include "cmap/io/point_cloud_file.hpp"
 #include "spatial/clouds.hpp"
 
 namespace cmap::test {
+
+/// A map of the sample town.
+inline PointCloud sample_town(const char* name) {
+  const std::filesystem::path source = std::getenv("CMAP_SOURCE_DIR");  // set by CTest
+  return read_point_cloud(source / "data_samples/town" / name).cloud;
+}
 
 /// A town as in notes 9.3: wavy ground of the given half width with houses of several sizes; the same world for every
 /// seed of the samples.
