@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 
@@ -32,6 +33,13 @@ PointCloud together(const PointCloud& target, const PointCloud& moved) {
   return both;
 }
 
+/// Lighter from low to high, so that what stands on the ground is seen from above.
+Rgb8 shaded(Rgb8 color, double height) {
+  const double light = 0.6 * std::clamp(height, 0.0, 1.0);
+  for (std::uint8_t& c : color) c = static_cast<std::uint8_t>(0.7 * c + light * (255 - 0.7 * c));
+  return color;
+}
+
 /// The panels, and the points that they show.
 struct Panels {
   std::deque<PointBlocks> points;
@@ -49,16 +57,19 @@ struct Panels {
 
   void add_both(std::string title, std::string caption, const PointCloud& target, const PointCloud& moved) {
     Layer& layer = add(std::move(title), std::move(caption), together(target, moved));
+    const Box3d box = box_to_show(*layer.points);
+    const double low_m = box.min.z(), range_m = std::max(box.max.z() - low_m, 1e-9);
     for (std::size_t slot = 0; slot < layer.colors.size(); ++slot) {
-      layer.colors[slot] = layer.points->original_index[slot] < target.size() ? kTargetColor : kSourceColor;
+      const Rgb8 color = layer.points->original_index[slot] < target.size() ? kTargetColor : kSourceColor;
+      layer.colors[slot] = shaded(color, (layer.points->world(slot).z() - low_m) / range_m);
     }
     layer.classes = {{"DST", kTargetColor}, {"SRC", kSourceColor}};
   }
 };
 
-/// The scale ends where 95 % of the distances do, but at 4 times what counted as a match at most.
+/// The scale ends where 95 % of the distances do, but at what counted as a match at most.
 void add_distances(const PointCloud& target, const PointCloud& moved, double max_distance_m, Panels& panels) {
-  constexpr double kShown = 0.95, kMostReaches = 4.0;
+  constexpr double kShown = 0.95;
   Layer& layer = panels.add("distance of SRC to DST", "", moved);
   const Bvh index(sort_points(target));
   const NearestField nearest = find_nearest(index, *layer.points);
@@ -67,7 +78,7 @@ void add_distances(const PointCloud& target, const PointCloud& moved, double max
   std::vector<double> ordered = distances_m;
   ColorScale scale{.unit = "m"};
   scale.high = value_at_rank(ordered, static_cast<std::size_t>(kShown * static_cast<double>(ordered.size() - 1)));
-  if (max_distance_m > 0.0) scale.high = std::min(scale.high, kMostReaches * max_distance_m);
+  if (max_distance_m > 0.0) scale.high = std::min(scale.high, max_distance_m);
   if (!(scale.high > 0.0)) scale.high = 1.0;
   for (std::size_t i = 0; i < distances_m.size(); ++i) layer.colors[i] = color_of(distances_m[i], scale);
   layer.scale = scale;
@@ -110,8 +121,9 @@ Image draw_alignment(const AlignmentPicture& picture) {
                     transformed(source, rival.T_dst_src));
   }
   FigureOptions options;
-  options.width_px = 700 * static_cast<int>(panels.layers.size());
-  options.height_px = 800;
+  const bool two_rows = panels.layers.size() > 3;
+  options.width_px = two_rows ? 1400 : 2100;
+  options.height_px = two_rows ? 1500 : 800;
   return draw_figure(panels.layers, camera_for(View::kTop, after, panel_aspect(panels.layers.size(), options), true),
                      options);
 }

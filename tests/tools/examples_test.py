@@ -189,6 +189,7 @@ CHECKS = {
     ],
     "cmap_align odometry.tum truth.tum --time-offset": [transform("T.txt")],
     "cmap_align est.ply ref.ply --output-cloud": [holds("moved.ply")],
+    "cmap_align est.ply ref.ply --figure": [holds("alignment.png")],
     "cmap_simulate small_town -o capture": [makes("capture/capture.json", "capture/truth/map.ply")],
     "cmap_simulate town -o capture": [makes("capture/capture.json")],
     "cmap_simulate aerial --print-options": [makes("mine.json", "capture/capture.json")],
