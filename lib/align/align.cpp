@@ -13,7 +13,7 @@
 #include "cmap/geometry/order_statistics.hpp"
 #include "cmap/io/transform_file.hpp"
 #include "cmap/spatial/k_nearest.hpp"
-#include "judge.hpp"
+#include "verdict/judge.hpp"
 
 namespace cmap {
 namespace {

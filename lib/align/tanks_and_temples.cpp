@@ -6,7 +6,7 @@
 
 #include "cmap/align/umeyama.hpp"
 #include "cmap/core/error.hpp"
-#include "registration_cloud.hpp"
+#include "icp/registration_cloud.hpp"
 
 namespace cmap {
 namespace {

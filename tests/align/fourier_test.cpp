@@ -1,4 +1,4 @@
-#include "fourier.hpp"
+#include "global/fourier.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "icp_levels.hpp"
+#include "icp/icp_levels.hpp"
 #include "methods/icp_method.hpp"
 
 namespace cmap {
