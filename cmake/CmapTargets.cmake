@@ -34,6 +34,24 @@ function(cmap_add_module name)
   set_property(GLOBAL APPEND PROPERTY CMAP_MODULES ${name})
 endfunction()
 
+# cmap_add_kernels(module LEVELS level ... [OPTIONS option ...]) adds simd/kernels_<level>.cpp to a module, one translation unit for
+# each instruction set of this processor family; which one runs is decided at start-up (core/simd.hpp).
+function(cmap_add_kernels module)
+  cmake_parse_arguments(ARG "" "" "LEVELS;OPTIONS" ${ARGN})
+  set(options_avx2 -mavx2 -mfma)
+  # Eigen wants -mfma beside AVX-512; GCC 12 warns of its own min and max intrinsics (GCC bug 105593).
+  set(options_avx512 -mfma -mavx512f -mavx512dq -mavx512bw -mavx512vl -mprefer-vector-width=512
+    -Wno-maybe-uninitialized -Wno-uninitialized)
+  foreach(level IN LISTS ARG_LEVELS)
+    if(level STREQUAL plain OR CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+      set(source simd/kernels_${level}.cpp)
+      target_sources(cmap_lib_${module} PRIVATE ${source})
+      set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON
+        COMPILE_OPTIONS "${ARG_OPTIONS};${options_${level}}")
+    endif()
+  endforeach()
+endfunction()
+
 # cmap_add_loaded_module(name SOURCES a.cpp ... LIBRARIES lib ...) makes a shared library that programs load when it is asked for
 # (cmap/core/loaded_module.hpp); only its entry point is visible.
 function(cmap_add_loaded_module name)

@@ -2,7 +2,7 @@
 # Installs the Debian and Ubuntu packages that cmap is built from, as far as they are missing.
 # Usage: tools/install_dependencies.sh [--all] [--tests] [--benchmarks]
 #   (nothing)      what cmap_eval, cmap_align, cmap_compare and cmap_leaderboard need
-#   --all          also what pictures, global registration, cmap_simulate and cmap_recon need
+#   --all          also what pictures, cmap_simulate and cmap_recon need
 #   --tests        also what the tests need: GoogleTest, Python, ffmpeg, node and npm, a browser, OpenGL in software
 #   --benchmarks   also what the speed benchmarks need: Google Benchmark and the libraries compared with
 set -euo pipefail

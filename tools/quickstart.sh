@@ -17,6 +17,6 @@ Program: $PWD/$build/bin/cmap_eval
 Report:  $PWD/$build/report.json
 Page:    $PWD/$build/report.html   (open it in a browser: both maps, curves, where the errors are)
 
-All programs, with pictures (cmap_render, --figure), global registration, cmap_simulate and cmap_recon:
+All programs, with pictures (cmap_render, --figure), cmap_simulate and cmap_recon:
   tools/install_dependencies.sh --all && cmake --preset release -DCMAP_BUILD_TESTS=OFF && cmake --build --preset release
 END

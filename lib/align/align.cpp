@@ -45,15 +45,6 @@ double median_spacing_m(const PointCloud& cloud) {
   return upper_median(spacing_m);
 }
 
-/// Every k-th point, at most about `most`.
-PointCloud sampled(const PointCloud& cloud, std::size_t most) {
-  const std::size_t step = cloud.size() / most + 1;
-  PointCloud sample;
-  sample.origin = cloud.origin;
-  for (std::size_t i = 0; i < cloud.size(); i += step) sample.positions.push_back(cloud.positions[i]);
-  return sample;
-}
-
 /// Thinning leaves an error of some share of the voxel. Where both clouds hold the same points, as a copy does, the
 /// points themselves leave none: they are tried, and taken where they come to lie on each other.
 void settle_on_common_points(const PointCloud& source, const PointCloud& target, bool with_scale, Alignment& found) {

@@ -86,11 +86,15 @@ double similarity_cost(const PairMoments& moments, const ScaleModel& model, cons
          moments.weight * offset.squaredNorm() + model.lambda_m2 * scale_error * scale_error;
 }
 
-double reflection_cost(const PairMoments& moments, bool scale_is_free) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(moments.cross, Eigen::ComputeFullU | Eigen::ComputeFullV);
+double best_agreement(const Eigen::Matrix3d& cross, Handedness handedness) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(cross, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::Vector3d singular = svd.singularValues();
   const bool reflects = (svd.matrixV() * svd.matrixU().transpose()).determinant() < 0.0;
-  const double agreement = singular[0] + singular[1] + (reflects ? 1.0 : -1.0) * singular[2];
+  return singular[0] + singular[1] + (reflects == (handedness == Handedness::kMirrored) ? 1.0 : -1.0) * singular[2];
+}
+
+double reflection_cost(const PairMoments& moments, bool scale_is_free) {
+  const double agreement = best_agreement(moments.cross, Handedness::kMirrored);
   const double spread = moments.scatter_p.trace();
   const double scale = scale_is_free && spread > 0.0 ? agreement / spread : 1.0;
   return std::max(0.0, moments.sq_q - 2.0 * scale * agreement + scale * scale * spread);

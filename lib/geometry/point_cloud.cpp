@@ -69,6 +69,14 @@ PointCloud crop(const PointCloud& cloud, const Box3d& box) {
   return select(cloud, keep);
 }
 
+PointCloud sampled(const PointCloud& cloud, std::size_t most) {
+  const std::size_t step = cloud.size() / most + 1;
+  PointCloud sample;
+  sample.origin = cloud.origin;
+  for (std::size_t i = 0; i < cloud.size(); i += step) sample.positions.push_back(cloud.positions[i]);
+  return sample;
+}
+
 PointCloud transformed(const PointCloud& cloud, const Eigen::Matrix4d& T_new_old) {
   PointCloud moved;
   moved.colors = cloud.colors;

@@ -1,5 +1,7 @@
 #include "phase_fold.hpp"
 
+#include <tuple>
+
 namespace cmap {
 namespace {
 

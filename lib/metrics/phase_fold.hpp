@@ -6,9 +6,7 @@
 #include <iterator>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <span>
-#include <tuple>
 #include <vector>
 
 #include "cmap/core/parallel.hpp"

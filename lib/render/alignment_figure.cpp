@@ -16,16 +16,6 @@ namespace {
 // Told apart by the color-blind, too, and on white.
 constexpr Rgb8 kTargetColor{44, 98, 160}, kSourceColor{230, 126, 34};
 
-/// Every k-th point, at most about half a million.
-PointCloud thinned_to_show(const PointCloud& cloud) {
-  constexpr std::size_t kMost = 500'000;
-  const std::size_t step = cloud.size() / kMost + 1;
-  PointCloud some;
-  some.origin = cloud.origin;
-  for (std::size_t i = 0; i < cloud.size(); i += step) some.positions.push_back(cloud.positions[i]);
-  return some;
-}
-
 PointCloud together(const PointCloud& target, const PointCloud& moved) {
   PointCloud both = target;
   const Eigen::Vector3d shift = moved.origin - target.origin;
@@ -68,11 +58,10 @@ struct Panels {
 };
 
 /// The scale ends where 95 % of the distances do, but at what counted as a match at most.
-void add_distances(const PointCloud& target, const PointCloud& moved, double max_distance_m, Panels& panels) {
+void add_distances(const Bvh& target, const PointCloud& moved, double max_distance_m, Panels& panels) {
   constexpr double kShown = 0.95;
   Layer& layer = panels.add("distance of SRC to DST", "", moved);
-  const Bvh index(sort_points(target));
-  const NearestField nearest = find_nearest(index, *layer.points);
+  const NearestField nearest = find_nearest(target, *layer.points);
   std::vector<double> distances_m(layer.colors.size());
   for (std::size_t i = 0; i < distances_m.size(); ++i) distances_m[i] = std::sqrt(nearest.sq_dist[i]);
   std::vector<double> ordered = distances_m;
@@ -84,16 +73,11 @@ void add_distances(const PointCloud& target, const PointCloud& moved, double max
   layer.scale = scale;
 }
 
-Eigen::Vector3d center_of(const PointCloud& cloud) {
-  const Box3d box = box_to_show(sort_points(cloud));
-  return 0.5 * (box.min + box.max);
-}
+Eigen::Vector3d center_of(const Box3d& box) { return 0.5 * (box.min + box.max); }
 
-/// Before the alignment, in view.
-void add_before(const AlignmentPicture& picture, const PointCloud& target, const PointCloud& source, Panels& panels) {
-  PointCloud before = transformed(source, picture.T_initial);
-  const Box3d shown = box_to_show(sort_points(target));
-  const Eigen::Vector3d apart = center_of(before) - 0.5 * (shown.min + shown.max);
+/// Before the alignment, in view of what is shown of the target.
+void add_before(const Box3d& shown, const PointCloud& target, PointCloud before, Panels& panels) {
+  const Eigen::Vector3d apart = center_of(box_to_show(sort_points(before))) - center_of(shown);
   std::string caption = "as given";
   if (apart.norm() > (shown.max - shown.min).norm()) {
     before.origin -= apart;
@@ -107,14 +91,16 @@ void add_before(const AlignmentPicture& picture, const PointCloud& target, const
 Image draw_alignment(const AlignmentPicture& picture) {
   const Alignment& found = picture.alignment;
   const Judgment& judgment = found.judgment;
-  const PointCloud target = thinned_to_show(picture.target), source = thinned_to_show(picture.source);
+  constexpr std::size_t kMostShown = 500'000;
+  const PointCloud target = sampled(picture.target, kMostShown), source = sampled(picture.source, kMostShown);
   const PointCloud moved = transformed(source, found.T_dst_src);
+  const Bvh index(sort_points(target));
   Panels panels;
-  add_before(picture, target, source, panels);
+  add_before(box_to_show(index.points), target, transformed(source, picture.T_initial), panels);
   panels.add_both(fmt::format("after: {}", name_of(judgment.verdict, verdict_names())),
                   fmt::format("score {:.3g}", judgment.score), target, moved);
   const PointBlocks& after = panels.points.back();
-  add_distances(target, moved, found.max_distance_m, panels);
+  add_distances(index, moved, found.max_distance_m, panels);
   if (!judgment.rivals.empty()) {
     const RivalPose& rival = judgment.rivals.front();
     panels.add_both("second-best answer", fmt::format("score {:.3g}", rival.score), target,

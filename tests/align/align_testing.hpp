@@ -38,13 +38,8 @@ inline Similarity random_similarity(std::mt19937_64& random, double low_scale, d
 
 /// The largest displacement between two transforms on the corners of the box of a cloud, m.
 inline double displacement_m(const Similarity& a, const Similarity& b, const PointCloud& cloud) {
-  const Box3d box = bounds(cloud);
   double largest = 0.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Eigen::Vector3d x((corner & 1 ? box.max : box.min).x(), (corner & 2 ? box.max : box.min).y(),
-                            (corner & 4 ? box.max : box.min).z());
-    largest = std::max(largest, (a * x - b * x).norm());
-  }
+  for (const Eigen::Vector3d& x : corners(bounds(cloud))) largest = std::max(largest, (a * x - b * x).norm());
   return largest;
 }
 

@@ -6,6 +6,7 @@
 
 #include "cmap/core/execution.hpp"
 #include "cmap/spatial/nearest.hpp"
+#include "core/simd_levels.hpp"
 #include "simd/kernels.hpp"
 #include "spatial/clouds.hpp"
 
@@ -67,8 +68,7 @@ TEST(KNearest, TheSameForEveryInstructionSetAndNumberOfThreads) {
   const Bvh index(sort_points(test::sheet_cloud(5000, 9)));
   const Queries queries{index.points, Eigen::Vector3d::Zero()};
   const Array<std::uint32_t> all_threads = find_k_nearest(index, index.points, 20);
-  for (SimdLevel level : {SimdLevel::kPlain, SimdLevel::kSse2, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
-    if (level > parse_simd_level("")) continue;
+  for (SimdLevel level : test::simd_levels_here()) {
     Array<std::uint32_t> found(index.points.size * 20);
     kernels_for(level).k_nearest(index, queries, 20, 0, index.points.blocks.size(), found.data());
     EXPECT_EQ(found, all_threads) << simd_level_name(level);

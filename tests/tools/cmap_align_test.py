@@ -7,13 +7,12 @@ import os
 import re
 import shlex
 import subprocess
-import tempfile
 import unittest
 from pathlib import Path
 
 import numpy as np
 
-from cmap_eval_testing import INPUT, PROGRAM as EVAL, SOURCE, TOWN, UNSUPPORTED, USAGE, hashes, ply
+from cmap_eval_testing import INPUT, PROGRAM as EVAL, SOURCE, TOWN, UNSUPPORTED, USAGE, WithFolders, hashes, ply
 
 PROGRAM = Path(os.environ["CMAP_ALIGN"]).resolve()
 REFERENCE, ESTIMATE = TOWN / "reference.ply", TOWN / "estimate.ply"
@@ -48,13 +47,9 @@ def plane(n, z=0.0):
     return ply([(x, y, z) for x, y in random.uniform(0, 10, (n, 2))])
 
 
-class Align(unittest.TestCase):
+class Align(WithFolders):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="cmap-align-")
-        self.addCleanup(folder.cleanup)
-        self.inputs, self.outputs = Path(folder.name) / "inputs", Path(folder.name) / "outputs"
-        self.inputs.mkdir()
-        self.outputs.mkdir()
+        super().setUp()
         self.matrix, self.json = self.outputs / "T.txt", self.outputs / "result.json"
 
     def input(self, name, content):

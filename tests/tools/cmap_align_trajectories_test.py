@@ -4,13 +4,12 @@
 import json
 import os
 import subprocess
-import tempfile
 import unittest
 from pathlib import Path
 
 import numpy as np
 
-from cmap_eval_testing import INPUT, PROGRAM as EVAL, SCHEMA, TOWN, UNSUPPORTED, USAGE, jsonschema, ply
+from cmap_eval_testing import INPUT, PROGRAM as EVAL, SCHEMA, TOWN, UNSUPPORTED, USAGE, WithFolders, jsonschema, ply
 
 PROGRAM = Path(os.environ["CMAP_ALIGN"]).resolve()
 EPOCH = 1700000000.0
@@ -35,13 +34,9 @@ def tum(times, points):
     return "".join("%.6f %.9f %.9f %.9f 0 0 0 1\n" % (t, *p) for t, p in zip(times, points))
 
 
-class Trajectories(unittest.TestCase):
+class Trajectories(WithFolders):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="cmap-trajectories-")
-        self.addCleanup(folder.cleanup)
-        self.inputs, self.outputs = Path(folder.name) / "inputs", Path(folder.name) / "outputs"
-        self.inputs.mkdir()
-        self.outputs.mkdir()
+        super().setUp()
         self.times = np.arange(0, 40, 0.1)
 
     def pair(self, source, target, times=None, target_times=None, write=tum):

@@ -76,16 +76,23 @@ def hashes(folder):
     }
 
 
-class CmapEval(unittest.TestCase):
-    """A folder of inputs, which no run may change, and one of outputs."""
+class WithFolders(unittest.TestCase):
+    """A folder of inputs and one of outputs."""
 
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="cmap-eval-")
+        folder = tempfile.TemporaryDirectory(prefix="cmap-test-")
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
         self.inputs, self.outputs = self.folder / "inputs", self.folder / "outputs"
         self.inputs.mkdir()
         self.outputs.mkdir()
+
+
+class CmapEval(WithFolders):
+    """Of inputs, which no run may change."""
+
+    def setUp(self):
+        super().setUp()
         self.reference = self.input("reference.ply", (MICRO / "two_points/reference.ply").read_bytes())
         self.estimate = self.input("estimate.ply", (MICRO / "two_points/estimate.ply").read_bytes())
         self.json = self.outputs / "report.json"

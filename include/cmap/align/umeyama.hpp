@@ -40,6 +40,12 @@ Similarity fit_similarity(const PairMoments& moments, const ScaleModel& model);
 /// J of any similarity.
 double similarity_cost(const PairMoments& moments, const ScaleModel& model, const Similarity& T);
 
+/// Whether a rotation is sought, or a reflection.
+enum class Handedness { kSame, kMirrored };
+
+/// The largest tr(R cross) of all rotations R, or of all reflections.
+double best_agreement(const Eigen::Matrix3d& cross, Handedness handedness);
+
 /// The least J of all reflections (det R = -1), each with its best t and, where it is free, s; lambda = 0. It is below
 /// that of fit_similarity() where one of the two point sets is the other's mirror image, and the same where they are
 /// flat.

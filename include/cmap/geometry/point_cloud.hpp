@@ -27,6 +27,15 @@ struct Box3d {
   Eigen::Vector3d max;
 };
 
+/// The eight of them; x changes first.
+inline std::array<Eigen::Vector3d, 8> corners(const Box3d& box) {
+  std::array<Eigen::Vector3d, 8> all;
+  for (unsigned i = 0; i < all.size(); ++i) {
+    all[i] = {(i & 1 ? box.max : box.min).x(), (i & 2 ? box.max : box.min).y(), (i & 4 ? box.max : box.min).z()};
+  }
+  return all;
+}
+
 /// The smallest box around both.
 inline Box3d united(const Box3d& a, const Box3d& b) { return {a.min.cwiseMin(b.min), a.max.cwiseMax(b.max)}; }
 
@@ -61,6 +70,9 @@ PointCloud select(const PointCloud& cloud, const Array<std::uint8_t>& keep);
 
 /// The points inside the box (bounds included), world frame.
 PointCloud crop(const PointCloud& cloud, const Box3d& box);
+
+/// Every k-th point without its color, at most about `most`.
+PointCloud sampled(const PointCloud& cloud, std::size_t most);
 
 /// The points moved by the homogeneous transform T_new_old (rigid or similarity; world frames), computed in double.
 PointCloud transformed(const PointCloud& cloud, const Eigen::Matrix4d& T_new_old);

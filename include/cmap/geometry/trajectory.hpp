@@ -15,4 +15,7 @@ struct StampedPose {
 /// Poses by increasing time.
 using Trajectory = std::vector<StampedPose>;
 
+/// From the first pose to the last; there must be one.
+inline double duration_s(const Trajectory& trajectory) { return trajectory.back().time_s - trajectory.front().time_s; }
+
 }  // namespace cmap

@@ -75,7 +75,7 @@ ColumnMap::ColumnMap(std::span<const Eigen::Vector3f> points, const Eigen::Matri
   ground_m.assign(word.size(), 0.0f);
   std::vector<std::size_t> cell_of(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector2d place = (moved[i].head<2>().cast<double>() - low_m) / cell_m;
+    const Eigen::Vector2d place = cell_at(moved[i].head<2>().cast<double>());
     const int x = std::clamp(static_cast<int>(place.x()), 0, width - 1);
     const int y = std::clamp(static_cast<int>(place.y()), 0, height - 1);
     cell_of[i] = static_cast<std::size_t>(y * width + x);

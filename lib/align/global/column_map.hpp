@@ -26,6 +26,8 @@ struct ColumnMap {
   /// Of a cell inside.
   float ground_at(int x, int y) const { return ground_m[index_of(x, y)]; }
   float weight_at(int x, int y) const { return weight[index_of(x, y)]; }
+  /// Where a place of the upright frame lies, in cells.
+  Eigen::Vector2d cell_at(const Eigen::Vector2d& place) const { return (place - low_m) / cell_m; }
   Eigen::Vector2d center() const { return low_m + 0.5 * cell_m * Eigen::Vector2d(width, height); }
 
   Eigen::Matrix3d upright;

@@ -252,7 +252,7 @@ double height_between(const ColumnMap& source, const ColumnMap& target, const Ei
     for (int x = 0; x < source.width; ++x) {
       if (source.word_at(x, y) == ColumnMap::kEmpty) continue;
       const Eigen::Vector2d place = source.low_m + source.cell_m * Eigen::Vector2d(x + 0.5, y + 0.5);
-      const Eigen::Vector2d cell = (turn.topLeftCorner<2, 2>() * place + shift - target.low_m) / target.cell_m;
+      const Eigen::Vector2d cell = target.cell_at(turn.topLeftCorner<2, 2>() * place + shift);
       const int u = static_cast<int>(std::floor(cell.x())), v = static_cast<int>(std::floor(cell.y()));
       if (target.word_at(u, v) == ColumnMap::kEmpty) continue;
       differences.push_back(target.ground_at(u, v) - source.ground_at(x, y));

@@ -30,19 +30,12 @@ std::span<const Eigen::Vector3f> points_of(const PointCloud& cloud) {
   return {cloud.positions.data(), cloud.positions.size()};
 }
 
-/// Agreement of a class at most of some poses, as most are wrong.
-Chance chance_among(const std::vector<Agreement>& agreements) {
-  constexpr double kPrior = 4.0, kPriorShare = 0.3;
-  Chance chance{};
-  for (std::size_t k = 0; k < chance.size(); ++k) {
-    double common = kPrior, agreeing = kPrior * kPriorShare;
-    for (const Agreement& agreement : agreements) {
-      common += agreement.by_class[k].common;
-      agreeing += agreement.by_class[k].agreeing;
-    }
-    chance[k] = std::clamp(agreeing / common, 0.02, 0.98);
-  }
-  return chance;
+/// Of poses most of which are wrong.
+std::vector<Worth> worths_among(const std::vector<Agreement>& agreements) {
+  const Chance chance = chance_among(agreements);
+  std::vector<Worth> worths;
+  for (const Agreement& agreement : agreements) worths.push_back(worth_of(agreement, chance));
+  return worths;
 }
 
 /// So that a voxel holds more than one point.
@@ -189,9 +182,7 @@ std::vector<JudgedPose> PoseSearch::search(bool mirrored) {
 std::vector<JudgedPose> PoseSearch::ranked(std::vector<Similarity> poses, std::size_t n_best) {
   std::vector<Agreement> agreements;
   for (const Similarity& pose : poses) agreements.push_back(field_->at(pose, kCoarseReach * voxel_m_, kQuickStep));
-  const Chance chance = chance_among(agreements);
-  std::vector<Worth> worths;
-  for (const Agreement& agreement : agreements) worths.push_back(worth_of(agreement, chance));
+  const std::vector<Worth> worths = worths_among(agreements);
   std::vector<Similarity> best;
   for (const std::size_t i : best_by_either(worths, n_best)) best.push_back(poses[i]);
   return refined(best);
@@ -223,9 +214,7 @@ std::vector<JudgedPose> PoseSearch::refined(const std::vector<Similarity>& guess
   const std::vector<Similarity> found = run(coarse_, guesses);
   std::vector<Agreement> agreements;
   for (const Similarity& pose : found) agreements.push_back(field_->at(pose, kCoarseReach * voxel_m_));
-  const Chance chance = chance_among(agreements);
-  std::vector<Worth> worths;
-  for (const Agreement& agreement : agreements) worths.push_back(worth_of(agreement, chance));
+  const std::vector<Worth> worths = worths_among(agreements);
   std::vector<JudgedPose> judged;
   for (const std::size_t i : best_by_either(worths, found.size())) {
     judged.push_back({found[i], agreements[i], worths[i]});
@@ -266,13 +255,9 @@ double PoseSearch::advantage_of(const JudgedPose& pose, const JudgedPose& rival,
 }
 
 double PoseSearch::apart_m(const Similarity& a, const Similarity& b) const {
-  const Box3d box = bounds(thinned_source_);
   double farthest = 0.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Eigen::Vector3d p =
-        Eigen::Vector3d((corner & 1 ? box.max : box.min).x(), (corner & 2 ? box.max : box.min).y(),
-                        (corner & 4 ? box.max : box.min).z()) -
-        source_origin_;
+  for (const Eigen::Vector3d& corner : corners(bounds(thinned_source_))) {
+    const Eigen::Vector3d p = corner - source_origin_;
     farthest = std::max(farthest, (a * p - b * p).norm());
   }
   return farthest;

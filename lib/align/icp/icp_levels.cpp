@@ -35,8 +35,7 @@ LevelRun run_level(LevelMatches& level, const NextTransform& next_from, const Si
 ThinnedSource::ThinnedSource(const PointCloud& source, double voxel_m, std::size_t most_points)
     : all(sort_points(thinned_to(source, voxel_m))) {
   if (most_points == 0 || all.size <= most_points) return;
-  const std::size_t step = (all.size + most_points - 1) / most_points;
-  for (std::size_t slot = step / 2; slot < all.size; slot += step) chosen.push_back(static_cast<std::uint32_t>(slot));
+  chosen = every_few(all.size, most_points);
 }
 
 LevelMatches::LevelMatches(const PointCloud& source_cloud, const PointCloud& target_cloud, double scale,

@@ -44,6 +44,13 @@ void fail_no_overlap(std::size_t n_matches, double max_distance_m) {
                   n_matches, max_distance_m));
 }
 
+Array<std::uint32_t> every_few(std::size_t n, std::size_t most) {
+  Array<std::uint32_t> slots;
+  const std::size_t step = (n + most - 1) / most;
+  for (std::size_t slot = step / 2; slot < n; slot += step) slots.push_back(static_cast<std::uint32_t>(slot));
+  return slots;
+}
+
 void RegistrationTarget::fit_surface(const NearestField& field, double max_distance_m) {
   Array<std::uint32_t> matched;
   for (std::size_t i = 0; i < field.slot.size(); ++i) {
@@ -121,10 +128,8 @@ double farthest_corner_m(const Matches& matches, const Eigen::Vector3d& center) 
     high = high.cwiseMax(matches.source.offset(slot));
   }
   double farthest = 0.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Eigen::Vector3f p((corner & 1 ? high : low).x(), (corner & 2 ? high : low).y(),
-                            (corner & 4 ? high : low).z());
-    farthest = std::max(farthest, (matches.local * p.cast<double>() - center).norm());
+  for (const Eigen::Vector3d& corner : corners({low.cast<double>(), high.cast<double>()})) {
+    farthest = std::max(farthest, (matches.local * corner - center).norm());
   }
   return farthest;
 }

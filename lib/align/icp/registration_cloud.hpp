@@ -10,6 +10,9 @@ namespace cmap {
 /// The cloud thinned to a voxel; 0: as it is. Throws std::invalid_argument where it is empty.
 PointCloud thinned_to(const PointCloud& cloud, double voxel_m);
 
+/// At most about `most` of n slots, evenly along the curve that they follow.
+Array<std::uint32_t> every_few(std::size_t n, std::size_t most);
+
 /// Targets are thinned to half the source's voxel: two lattices of one voxel lock into each other wherever they start,
 /// which keeps shifts of half a voxel and scales of a few percent from being seen at all.
 inline PointCloud thinned_target(const PointCloud& cloud, double voxel_m) { return thinned_to(cloud, 0.5 * voxel_m); }
@@ -28,8 +31,8 @@ struct RegistrationTarget {
   Surface surface;
 };
 
-/// Fills overlap, RMSE, counts, condition and weakest direction for the source at `local`. Throws UnsupportedError
-/// where fewer than 3 points match, or where the surface leaves a direction free.
+/// Fills overlap, RMSE, counts, condition, weakest direction and standard errors for the source at `local`. Throws
+/// UnsupportedError where fewer than 3 points match, or where the surface leaves a direction free.
 void assess(MovingSource& source, RegistrationTarget& target, const Similarity& local, double max_distance_m,
             bool with_scale, Alignment& result);
 

@@ -52,10 +52,7 @@ double explained_motion(std::span<const PosePair> pairs) {
     sq_target += target.squaredNorm();
   }
   if (!(sq_source > 0.0 && sq_target > 0.0)) return 0.0;
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(cross, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const bool reflects = (svd.matrixV() * svd.matrixU().transpose()).determinant() < 0.0;
-  const Eigen::Vector3d singular = svd.singularValues();
-  const double agreement = singular[0] + singular[1] + (reflects ? -1.0 : 1.0) * singular[2];
+  const double agreement = best_agreement(cross, Handedness::kSame);
   return agreement * agreement / (sq_source * sq_target);
 }
 
@@ -73,9 +70,7 @@ PathMeasures measure(std::span<const PosePair> pairs, const Similarity& T, bool 
   m.n = moments.weight;
   const auto rmse = [&](double cost) { return std::sqrt(std::max(0.0, cost) / moments.weight); };
   const auto best = [&](const ScaleModel& model) { return fit_similarity(moments, model); };
-  double sum_sq = 0.0;
-  for (const double distance : center_distances(pairs, T)) sum_sq += distance * distance;
-  m.rmse_m = rmse(sum_sq);
+  m.rmse_m = center_rmse_m(pairs, T);
   m.best_rmse_m = m.free_rmse_m = m.rmse_m;
   m.target_spread_m = rmse(moments.sq_q);
   m.source_spread_m = rmse(moments.scatter_p.trace());

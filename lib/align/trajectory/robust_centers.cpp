@@ -111,6 +111,12 @@ std::vector<double> center_distances(std::span<const PosePair> pairs, const Simi
   return distances;
 }
 
+double center_rmse_m(std::span<const PosePair> pairs, const Similarity& T) {
+  double sum_sq = 0.0;
+  for (const PosePair& pair : pairs) sum_sq += (T * pair.source.position - pair.target.position).squaredNorm();
+  return std::sqrt(sum_sq / static_cast<double>(pairs.size()));
+}
+
 RobustCenters fit_most_centers(std::span<const PosePair> pairs, const ScaleModel& model) {
   const RobustCenters plain{fit_similarity(center_moments(pairs), model), std::vector<std::uint8_t>(pairs.size(), 1),
                             0};

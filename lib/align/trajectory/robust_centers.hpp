@@ -14,6 +14,7 @@ PairMoments center_moments(std::span<const PosePair> pairs, std::span<const std:
 
 /// Lengths of T source - target, m.
 std::vector<double> center_distances(std::span<const PosePair> pairs, const Similarity& T);
+double center_rmse_m(std::span<const PosePair> pairs, const Similarity& T);
 
 /// A similarity and the pairs that it is the least-squares fit of.
 struct RobustCenters {

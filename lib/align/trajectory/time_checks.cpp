@@ -11,8 +11,6 @@
 namespace cmap {
 namespace {
 
-double duration_s(const Trajectory& trajectory) { return trajectory.back().time_s - trajectory.front().time_s; }
-
 /// Where one trajectory lasts about 1e3, 1e6 or 1e9 times as long as the other, its times are probably no seconds.
 std::string unit_hint(const Trajectory& source, const Trajectory& target) {
   constexpr std::array<std::pair<double, const char*>, 3> kUnits{

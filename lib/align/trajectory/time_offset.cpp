@@ -31,8 +31,6 @@ constexpr double kLargestShare = 0.5;
 constexpr double kLongestGaps = 5.0;  // median steps
 constexpr double kShortestGap_s = 0.15;
 
-double lasts_s(const Trajectory& trajectory) { return trajectory.back().time_s - trajectory.front().time_s; }
-
 double max_gap_s(const Trajectory& trajectory) {
   return std::max(kShortestGap_s, kLongestGaps * median_step_s(trajectory));
 }
@@ -58,7 +56,7 @@ std::optional<Candidate> candidate_near(OffsetCost cost, double start_s, double 
 /// The best first; refined by less and less of what does not fit.
 std::vector<Candidate> candidates(const Trajectory& source, const Trajectory& target) {
   const double step_s = std::max(
-      {median_step_s(source), median_step_s(target), std::max(lasts_s(source), lasts_s(target)) / kMostSamples});
+      {median_step_s(source), median_step_s(target), std::max(duration_s(source), duration_s(target)) / kMostSamples});
   const auto profile = [&](const Trajectory& trajectory) {
     return motion_profile(trajectory, step_s, max_gap_s(trajectory));
   };

@@ -42,16 +42,10 @@ Similarity first_frame(const PosePair& pair) {
   return T;
 }
 
-double rmse_m(std::span<const PosePair> pairs, const Similarity& T) {
-  double sum_sq = 0.0;
-  for (const PosePair& pair : pairs) sum_sq += (T * pair.source.position - pair.target.position).squaredNorm();
-  return std::sqrt(sum_sq / static_cast<double>(pairs.size()));
-}
-
 TrajectoryError trajectory_error(std::span<const PosePair> pairs, TimePairing pairing, TrajectoryFit fit) {
   const Similarity T =
       fit == TrajectoryFit::kFirstFrame ? first_frame(pairs.front()) : fit_centers(pairs, scale_model(fit));
-  return {pairing, pairs.size(), rmse_m(pairs, T)};
+  return {pairing, pairs.size(), center_rmse_m(pairs, T)};
 }
 
 /// By the other pairing than the one that was asked for.
@@ -134,7 +128,7 @@ TrajectoryAlignment align_at(const Trajectory& source, const Trajectory& target,
   result.n_target = target.size();
   result.n_matches = fitting.size();
   result.overlap = std::min(1.0, static_cast<double>(pairs.size()) / static_cast<double>(result.n_source));
-  result.rmse_m = rmse_m(fitting, T);
+  result.rmse_m = center_rmse_m(fitting, T);
   result.converged = true;
   result.errors.push_back(trajectory_error(pairs, options.pairing, options.fit));
   if (const auto other = other_error(source, target, options)) result.errors.push_back(*other);

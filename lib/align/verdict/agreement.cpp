@@ -50,6 +50,27 @@ PointBlocks moved_to(const PointBlocks& points, const Array<std::uint32_t>& slot
 
 }  // namespace
 
+void Agreement::add(std::size_t i, const WitnessMap::Witness& witness, bool it_agrees) {
+  state[i] = it_agrees ? kAgrees : kDisagrees;
+  Sums& sums = by_class[witness.kind];
+  sums.common += static_cast<double>(witness.weight);
+  if (it_agrees) sums.agreeing += static_cast<double>(witness.weight);
+}
+
+Chance chance_among(std::span<const Agreement> agreements) {
+  constexpr double kPrior = 4.0, kPriorShare = 0.3;
+  Chance chance{};
+  for (std::size_t k = 0; k < chance.size(); ++k) {
+    double common = kPrior, agreeing = kPrior * kPriorShare;
+    for (const Agreement& agreement : agreements) {
+      common += agreement.by_class[k].common;
+      agreeing += agreement.by_class[k].agreeing;
+    }
+    chance[k] = std::clamp(agreeing / common, 0.02, 0.98);
+  }
+  return chance;
+}
+
 Agreement AgreementField::at(const Similarity& local, double reach_m, std::size_t step) {
   Agreement found;
   found.state.assign(size(), Agreement::kUnseen);
@@ -78,10 +99,7 @@ void AgreementField::look(WitnessMap& from, WitnessMap& to, const Similarity& lo
       const Eigen::Vector3d d = (moved.offset(i) - index.points.offset(field.slot[i])).cast<double>();
       is_met = agrees(d, local.rotation * witness.normal.cast<double>(), to.fine(), field.slot[i], reach_m);
     }
-    found.state[first + seen[i]] = is_met ? Agreement::kAgrees : Agreement::kDisagrees;
-    Agreement::Sums& sums = found.by_class[witness.kind];
-    sums.common += static_cast<double>(witness.weight);
-    if (is_met) sums.agreeing += static_cast<double>(witness.weight);
+    found.add(first + seen[i], witness, is_met);
   }
 }
 
@@ -102,8 +120,7 @@ void AgreementField::look_at_home(WitnessMap& map, double reach_m, std::size_t f
   }
   map.fine().points.surface.fit(met);
   for (std::size_t slot = 0; slot < map.size(); ++slot) {
-    Agreement::State& state = best.state[first + slot];
-    if (state == Agreement::kUnseen) continue;
+    if (best.state[first + slot] == Agreement::kUnseen) continue;
     const WitnessMap::Witness& witness = map[slot];
     const std::uint32_t other = nearest[2 * slot + 1];
     bool is_met = other != kNoNeighbor;
@@ -112,37 +129,24 @@ void AgreementField::look_at_home(WitnessMap& map, double reach_m, std::size_t f
       is_met = d.norm() <= farthest_m(map.fine(), reach_m) &&
                agrees(d, witness.normal.cast<double>(), map.fine(), other, reach_m);
     }
-    state = is_met ? Agreement::kAgrees : Agreement::kDisagrees;
-    Agreement::Sums& sums = best.by_class[witness.kind];
-    sums.common += static_cast<double>(witness.weight);
-    if (is_met) sums.agreeing += static_cast<double>(witness.weight);
+    best.add(first + slot, witness, is_met);
   }
 }
 
 Chance AgreementField::chance_about(const Similarity& local, double reach_m, double shortest_m) {
   constexpr int kDirections = 6;
   constexpr std::size_t kStep = 4;
-  constexpr double kPrior = 4.0, kPriorShare = 0.3;
-  std::array<Agreement::Sums, WitnessMap::kClasses> sums{};
-  for (auto& of : sums) of = {kPrior, kPrior * kPriorShare};
+  std::vector<Agreement> found;
   for (const double lengths : {1.0, 2.3}) {
     for (int direction = 0; direction < kDirections; ++direction) {
       const double angle = 2.0 * std::numbers::pi * (direction + 0.25 * lengths) / kDirections;
       const Eigen::Vector3d shift = lengths * shortest_m * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0);
       Similarity moved = local;
       moved.translation += target_.plan().upright.transpose() * shift;
-      const Agreement found = at(moved, reach_m, kStep);
-      for (std::size_t k = 0; k < sums.size(); ++k) {
-        sums[k].common += found.by_class[k].common;
-        sums[k].agreeing += found.by_class[k].agreeing;
-      }
+      found.push_back(at(moved, reach_m, kStep));
     }
   }
-  Chance chance{};
-  for (std::size_t k = 0; k < sums.size(); ++k) {
-    chance[k] = std::clamp(sums[k].agreeing / sums[k].common, 0.02, 0.98);
-  }
-  return chance;
+  return chance_among(found);
 }
 
 Worth worth_of(const Agreement& agreement, const Chance& chance) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "verdict/witness.hpp"
@@ -17,10 +18,16 @@ struct Agreement {
     double common = 0.0, agreeing = 0.0;  ///< weights of the witnesses
   };
   std::array<Sums, WitnessMap::kClasses> by_class{};
+
+  /// Of a witness that was seen: whether it agrees.
+  void add(std::size_t i, const WitnessMap::Witness& witness, bool it_agrees);
 };
 
 /// Share of the witnesses of a class that agree wherever the maps lie on each other.
 using Chance = std::array<double, WitnessMap::kClasses>;
+
+/// From poses most of which are wrong.
+Chance chance_among(std::span<const Agreement> agreements);
 
 /// Compares two maps' witnesses with the other's surface: near, and facing the same way.
 class AgreementField {

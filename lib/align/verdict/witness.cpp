@@ -17,13 +17,6 @@ constexpr double kFacesUp = 0.9, kFacesAside = 0.35;
 constexpr double kNearGround = 2.0;  ///< voxels of the plan's layers
 constexpr double kFullBlock = 3.0;   ///< points from which a block counts as one
 
-Array<std::uint32_t> every_few(std::size_t n, std::size_t most) {
-  Array<std::uint32_t> slots;
-  const std::size_t step = (n + most - 1) / most;
-  for (std::size_t slot = step / 2; slot < n; slot += step) slots.push_back(static_cast<std::uint32_t>(slot));
-  return slots;
-}
-
 double spacing_of(const Bvh& index) {
   constexpr std::size_t kSample = 1000;
   const Array<std::uint32_t> slots = every_few(index.points.size, kSample);
@@ -62,7 +55,7 @@ std::uint8_t WitnessMap::kind_of(const Eigen::Vector3d& p, const Eigen::Vector3f
   const double lift = std::abs(normal.cast<double>().dot(plan_.upright.row(2).transpose()));
   const int facing = normal.squaredNorm() < 0.5f ? 3 : lift > kFacesUp ? 0 : lift < kFacesAside ? 1 : 2;
   const Eigen::Vector3d turned = plan_.upright * p;
-  const Eigen::Vector2d cell = (turned.head<2>() - plan_.low_m) / plan_.cell_m;
+  const Eigen::Vector2d cell = plan_.cell_at(turned.head<2>());
   const int x = std::clamp(static_cast<int>(cell.x()), 0, plan_.width - 1);
   const int y = std::clamp(static_cast<int>(cell.y()), 0, plan_.height - 1);
   const bool is_high = turned.z() - static_cast<double>(plan_.ground_at(x, y)) > kNearGround * plan_.layer_m;
@@ -83,7 +76,7 @@ void WitnessMap::weigh(double block_m) {
 }
 
 bool WitnessMap::was_seen_at(const Eigen::Vector3d& p) const {
-  const Eigen::Vector2d cell = ((plan_.upright * p).head<2>() - plan_.low_m) / plan_.cell_m;
+  const Eigen::Vector2d cell = plan_.cell_at((plan_.upright * p).head<2>());
   const int x = static_cast<int>(std::floor(cell.x())), y = static_cast<int>(std::floor(cell.y()));
   return plan_.word_at(x, y) != ColumnMap::kEmpty;
 }

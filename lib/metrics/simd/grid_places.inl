@@ -1,4 +1,4 @@
-// Where points lie in a grid: the formulas are those of PhasedFrame::place and VoxelFrame::key.
+// Where points lie in a grid: the formulas are those of PhasedFrame and VoxelFrame::key.
 
 namespace cmap::CMAP_LANES {
 namespace {
