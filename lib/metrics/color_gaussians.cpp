@@ -35,17 +35,19 @@ struct ColorVoxels {
 template <class Word>
 class ColorUse {
  public:
-  ColorUse(std::size_t n_phases, const PhaseOptions& options, double step)
-      : min_points_(std::max<std::uint64_t>(options.min_points, 2)),
+  ColorUse(const PhasedFrame& frame, const PhaseOptions& options, double step)
+      : voxels_(&frame.voxels()),
+        min_points_(std::max<std::uint64_t>(options.min_points, 2)),
         step_(step),
         with_sample_(options.halves),
         distances_(step),
-        found_(n_phases) {}
+        found_(static_cast<std::size_t>(frame.n_phases())) {}
 
-  void voxel(int phase, const VoxelIndex& index, const PhaseVoxel<ColorSums<Word>>& colors) {
+  void voxel(int phase, const VoxelKey& key, const PhaseVoxel<ColorSums<Word>>& colors) {
     const std::uint64_t n_reference = colors.reference.n(), n_estimate = colors.estimate.n();
     if (n_reference < min_points_ || n_estimate < min_points_ || !fits(n_reference) || !fits(n_estimate)) return;
     if (phase == 0) {
+      const VoxelIndex index = voxels_->index(key);
       found_.voxels.push_back({index, NAN, n_reference, n_estimate});
       if (with_sample_) {
         found_.sample.push_back({index, 0, n_estimate, WideColorSums(colors.reference).gaussian(step_)});
@@ -53,7 +55,7 @@ class ColorUse {
     }
     distances_.add(phase, colors.reference, colors.estimate, deliver());
   }
-  void halves(const ColorSums<Word>& one, const ColorSums<Word>& other) {
+  void halves(const VoxelKey&, const ColorSums<Word>& one, const ColorSums<Word>& other) {
     if (one.n() < min_points_ || other.n() < min_points_ || !fits(one.n()) || !fits(other.n())) return;
     distances_.add(kOfHalves, one, other, deliver());
   }
@@ -84,6 +86,7 @@ class ColorUse {
     };
   }
 
+  const VoxelFrame* voxels_;
   std::uint64_t min_points_;
   double step_;
   bool with_sample_;
@@ -140,7 +143,7 @@ std::optional<std::vector<ColorVoxels>> color_voxels(const MapPair& pair, const 
   using Source = ColorSource<Word>;
   using Use = ColorUse<Word>;
   const Source source(maps_of(pair), options.halves);
-  const Use none(static_cast<std::size_t>(frame.n_phases()), options, source.step);
+  const Use none(frame, options, source.step);
   std::vector<Use> used = PhaseFold<Source, Use>(maps_of(pair), frame, source).run(none);
   std::vector<ColorVoxels> found;
   for (Use& use : used) {

@@ -109,7 +109,7 @@ struct ColorSource {
     const Eigen::Vector3f color = color_at(map.colors, slot);
     moments.add({whole(color.x()), whole(color.y()), whole(color.z())});
   }
-  static constexpr bool kHasCorners = false;
+  void to_frame(Moments&, const VoxelKey&) const {}
 
   bool halves;
   double steps_per_level;  ///< in 1/255

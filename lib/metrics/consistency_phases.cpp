@@ -14,14 +14,14 @@ struct ConsistencyUse {
 
   double step;
 
-  void voxel(int phase, const VoxelIndex&, const PhaseVoxel<WideColorSums>& sums) {
+  void voxel(int phase, const VoxelKey&, const PhaseVoxel<WideColorSums>& sums) {
     const std::uint64_t n = sums.estimate.n();
     if (n == 0 || !is_in_mean({.index = {}, .n = n}, singletons, min_points)) return;
     ++counts[static_cast<std::size_t>(phase)];
     if (n < 2) return;
     traces[static_cast<std::size_t>(phase)].add(sums.estimate.gaussian(step).covariance().trace());
   }
-  void halves(const WideColorSums&, const WideColorSums&) {}
+  void halves(const VoxelKey&, const WideColorSums&, const WideColorSums&) {}
 };
 
 }  // namespace

@@ -28,6 +28,12 @@ namespace cmap {
 template <class Moments>
 struct PhaseVoxel {
   Moments reference{}, estimate{};
+
+  PhaseVoxel& operator+=(const PhaseVoxel& other) {
+    reference += other.reference;
+    estimate += other.estimate;
+    return *this;
+  }
 };
 
 /// The points of one cell in both maps.
@@ -58,14 +64,12 @@ inline BothSides<const IndexedMap*> maps_of(const MapPair& pair) { return {&pair
 ///   Moments                                   a voxel's sums: +=, -= and n(),
 ///   bool counts(map, slot)                    whether a point is summed,
 ///   void add(Moments&, map, slot, VoxelKey)   adds it,
-///   bool kHasCorners                          whether sums are about the corners of voxels; then
-///   void merge(Moments&, const Moments& part, int axis, int shift, int after)
-///                                             adds those of a part that a phase shifts, on this axis, into so many
-///                                             voxels after its own,
+///   void to_frame(Moments&, VoxelKey)         where sums are about the corner of a voxel, makes them sums about the
+///                                             corner of the frame's first, which can be merged,
 ///   bool halves                               whether a random half of the reference is asked for.
 /// `Use`, one for each task, is a copy of `prototype` and has, once for each voxel,
-///   void voxel(int phase, const VoxelIndex&, const PhaseVoxel<Moments>&),
-///   void halves(const Moments& one, const Moments& other)  of the reference, in phase 0.
+///   void voxel(int phase, const VoxelKey&, const PhaseVoxel<Moments>&),
+///   void halves(const VoxelKey&, const Moments& one, const Moments& other)  of the reference, in phase 0.
 template <class Source, class Use>
 class PhaseFold {
  public:
@@ -78,10 +82,11 @@ class PhaseFold {
         source_(source),
         m_(frame.parts_per_axis()),
         edge_(kVoxels * m_ + m_ - 1),
-        voxel_on_axis_(static_cast<std::size_t>(edge_)) {
+        by_edge_(edge_),
+        places_on_axis_(static_cast<std::size_t>(edge_)) {
     for (std::int32_t at = 0; at < edge_; ++at) {
-      const std::int32_t shift = (m_ - 1 - at % m_) % m_;
-      voxel_on_axis_[static_cast<std::size_t>(at)] = {shift, (at - (m_ - 1) + shift) / m_};
+      const std::int32_t shift = (m_ - 1 - at % m_) % m_, part = at - (m_ - 1);
+      places_on_axis_[static_cast<std::size_t>(at)] = {shift, (part + shift) / m_, part / m_};
     }
   }
 
@@ -98,9 +103,11 @@ class PhaseFold {
       std::unique_ptr<Tables> tables = pool.take();
       for (const PairedCell& cell : tasks[i]) {
         sum_points(cell, *tables);
-        sum_voxels(*tables, [&](std::int32_t place, const Voxel& sums) {
+        list_parts(cell.cell, *tables);
+        const auto use = [&](std::int32_t place, const Voxel& sums) {
           hand_out(cell.cell, place, sums, tables->half, used[i], open[i]);
-        });
+        };
+        m_ == 1 ? sum_voxels<1>(*tables, use) : m_ == 2 ? sum_voxels<2>(*tables, use) : sum_voxels<3>(*tables, use);
         tables->clear();
       }
       pool.give(std::move(tables));
@@ -127,12 +134,27 @@ class PhaseFold {
     }
   };
 
-  /// On an axis, by place of its first part: a voxel's phase, and its key in the cell.
-  struct AxisVoxel {
-    std::int32_t shift, key;
+  /// Of one place on an axis: the phase of the voxel of which it is the first part, and the keys in the cell of that
+  /// voxel and of the one that holds the part in the grid that is not shifted.
+  struct AxisPlace {
+    std::int32_t shift, key, part_key;
   };
 
-  /// Of one cell: the parts of voxels, and what becomes of them axis by axis; the half of the reference by voxel.
+  /// Divides places, by a product: a cell has less than 2^20 of them.
+  class Divisor {
+   public:
+    explicit Divisor(std::int32_t by) : factor_((std::uint64_t{1} << kBits) / static_cast<std::uint64_t>(by) + 1) {}
+    std::int32_t quotient(std::int32_t place) const {
+      return static_cast<std::int32_t>(static_cast<std::uint64_t>(place) * factor_ >> kBits);
+    }
+
+   private:
+    static constexpr int kBits = 40;
+    std::uint64_t factor_;
+  };
+
+  /// Of one cell: the parts of voxels, in order, and windows of them on the first axis; the half of the reference by
+  /// voxel.
   struct Tables {
     explicit Tables(std::int32_t edge) : parts(edge * edge * edge), half(kVoxels * kVoxels * kVoxels) {}
     void clear() {
@@ -140,11 +162,10 @@ class PhaseFold {
       half.clear();
       ordered.clear();
       by_x.clear();
-      by_y.clear();
     }
     LocalGrid<Voxel> parts;
     LocalGrid<Moments> half;
-    std::vector<PlacedSums<Voxel>> ordered, by_x, by_y;
+    std::vector<PlacedSums<Voxel>> ordered, by_x;
   };
 
   /// Tables that tasks leave to each other: making them costs as much as some thousand points.
@@ -208,52 +229,54 @@ class PhaseFold {
     return (in_cell.x * kVoxels + in_cell.y) * kVoxels + in_cell.z;
   }
 
-  /// Every window of m x m x m parts is a voxel of one phase: their sums, by the place of the first part.
-  template <class UseVoxel>
-  void sum_voxels(Tables& tables, UseVoxel use) const {
-    if (m_ == 1) return tables.parts.in_order(use);
-    tables.parts.in_order([&](std::int32_t place, const Voxel& sums) { tables.ordered.push_back({place, sums}); });
-    const auto append_to = [](std::vector<PlacedSums<Voxel>>& windows) {
-      return [&windows](std::int32_t place, const Voxel& sums) { windows.push_back({place, sums}); };
-    };
-    sum_windows_on(0, tables.ordered, append_to(tables.by_x));
-    sum_windows_on(1, tables.by_x, append_to(tables.by_y));
-    sum_windows_on(2, tables.by_y, use);
+  void list_parts(const VoxelKey& cell, Tables& tables) const {
+    tables.parts.in_order([&](std::int32_t place, const Voxel& sums) {
+      Voxel& part = tables.ordered.emplace_back(PlacedSums<Voxel>{place, sums}).sums;
+      const auto [x, y, z] = on_axes(place);
+      const VoxelKey voxel = key_of(cell, {x.part_key, y.part_key, z.part_key});
+      source_.to_frame(part.reference, voxel);
+      source_.to_frame(part.estimate, voxel);
+    });
   }
 
-  template <class Emit>
-  void sum_windows_on(int axis, std::span<const PlacedSums<Voxel>> parts, Emit emit) const {
-    const std::int32_t stride = axis == 0 ? edge_ * edge_ : axis == 1 ? edge_ : 1;
-    const auto merge = [&](Voxel& into, const PlacedSums<Voxel>& part, std::int32_t window) {
-      if constexpr (Source::kHasCorners) {
-        const auto [shift, key] = voxel_on_axis_[static_cast<std::size_t>(window / stride % edge_)];
-        const int after = key - (part.place / stride % edge_ - (m_ - 1)) / m_;
-        source_.merge(into.reference, part.sums.reference, axis, shift, after);
-        source_.merge(into.estimate, part.sums.estimate, axis, shift, after);
-      } else {
-        into.reference += part.sums.reference;
-        into.estimate += part.sums.estimate;
-      }
-    };
-    m_ == 2 ? sum_windows<2>(parts, stride, merge, emit) : sum_windows<3>(parts, stride, merge, emit);
+  /// Every window of m x m x m parts is a voxel of one phase: their sums, by the place of the first part.
+  template <int kParts, class UseVoxel>
+  void sum_voxels(Tables& tables, UseVoxel use) const {
+    sum_windows<kParts>(std::span<const PlacedSums<Voxel>>(tables.ordered), edge_ * edge_,
+                        [&](std::int32_t place, const Voxel& sums) {
+                          tables.by_x.push_back({place, sums});
+                        });
+    RowWindows<kParts, Voxel> on_z;
+    sum_windows<kParts>(std::span<const PlacedSums<Voxel>>(tables.by_x), edge_,
+                        [&](std::int32_t place, const Voxel& sums) { on_z.add(place, sums, use); });
+    on_z.finish(use);
   }
 
   void hand_out(const VoxelKey& cell, std::int32_t place, const Voxel& sums, const LocalGrid<Moments>& half, Use& use,
                 std::vector<OpenVoxel>& open) const {
-    const std::array<AxisVoxel, 3> on_axis{voxel_on_axis_[static_cast<std::size_t>(place / (edge_ * edge_))],
-                                           voxel_on_axis_[static_cast<std::size_t>(place / edge_ % edge_)],
-                                           voxel_on_axis_[static_cast<std::size_t>(place % edge_)]};
-    const auto [x, y, z] = on_axis;
+    const std::array<AxisPlace, 3> on_axis = on_axes(place);
+    const auto& [x, y, z] = on_axis;
     const int phase = (x.shift * m_ + y.shift) * m_ + z.shift;
-    const VoxelKey key{cell.x * kVoxels + x.key, cell.y * kVoxels + y.key, cell.z * kVoxels + z.key};
-    const auto at_border = [](const AxisVoxel& v) { return v.shift > 0 && (v.key == 0 || v.key == kVoxels); };
+    const VoxelKey in_cell{x.key, y.key, z.key}, key = key_of(cell, in_cell);
+    const auto at_border = [](const AxisPlace& v) { return v.shift > 0 && (v.key == 0 || v.key == kVoxels); };
     if (std::ranges::any_of(on_axis, at_border)) return open.push_back({phase, key, sums});
-    use.voxel(phase, frame_.voxels().index(key), sums);
+    use.voxel(phase, key, sums);
     if (phase > 0 || !source_.halves) return;
-    if (const Moments* one = half.find(place_of({x.key, y.key, z.key}))) {
-      Moments other = sums.reference;
-      use.halves(*one, other -= *one);
+    if (const Moments* half_here = half.find(place_of(in_cell))) {
+      Moments one = *half_here, other = sums.reference;
+      source_.to_frame(one, key);
+      use.halves(key, one, other -= one);
     }
+  }
+
+  static VoxelKey key_of(const VoxelKey& cell, const VoxelKey& in_cell) {
+    return {cell.x * kVoxels + in_cell.x, cell.y * kVoxels + in_cell.y, cell.z * kVoxels + in_cell.z};
+  }
+
+  std::array<AxisPlace, 3> on_axes(std::int32_t place) const {
+    const std::int32_t row = by_edge_.quotient(place), x = by_edge_.quotient(row);
+    const auto on_axis = [&](std::int32_t at) { return places_on_axis_[static_cast<std::size_t>(at)]; };
+    return {on_axis(x), on_axis(row - x * edge_), on_axis(place - row * edge_)};
   }
 
   /// Puts the open voxels of all tasks together.
@@ -274,10 +297,9 @@ class PhaseFold {
       Voxel sums = first->voxel->sums;
       auto next = std::next(first);
       for (; next != open.end() && next->order[0] == first->order[0] && next->order[1] == first->order[1]; ++next) {
-        sums.reference += next->voxel->sums.reference;
-        sums.estimate += next->voxel->sums.estimate;
+        sums += next->voxel->sums;
       }
-      rest.voxel(first->voxel->phase, frame_.voxels().index(first->voxel->key), sums);
+      rest.voxel(first->voxel->phase, first->voxel->key, sums);
       first = next;
     }
     used.push_back(std::move(rest));
@@ -288,7 +310,8 @@ class PhaseFold {
   const Source& source_;
   std::int32_t m_;
   std::int32_t edge_;  ///< of the places of a cell: its parts, and before them where windows begin that end in it
-  std::vector<AxisVoxel> voxel_on_axis_;
+  Divisor by_edge_;
+  std::vector<AxisPlace> places_on_axis_;
 };
 
 }  // namespace cmap

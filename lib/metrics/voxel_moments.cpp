@@ -22,14 +22,11 @@ double in_double(Signed value) {
   return value < 0 ? -found : found;
 }
 
-/// n sum xy - sum x sum y: exact, as both are at most 2^126 for n points of 2^32 steps, and then rounded.
-double scaled_scatter(std::uint64_t n, const WideSum& products, std::uint64_t sum_x, std::uint64_t sum_y) {
-  return in_double(static_cast<Signed>(n * products.value() - WideSum::Integer{sum_x} * sum_y));
-}
+using Integer = WideSum::Integer;
 
-WideSum wide(WideSum::Integer value) {
-  return {static_cast<std::uint64_t>(value), static_cast<std::uint64_t>(value >> 64)};
-}
+Integer wrapped(std::int64_t value) { return static_cast<Integer>(static_cast<Signed>(value)); }
+
+WideSum wide(Integer value) { return {static_cast<std::uint64_t>(value), static_cast<std::uint64_t>(value >> 64)}; }
 
 }  // namespace
 
@@ -37,7 +34,8 @@ VoxelSteps::VoxelSteps(const VoxelFrame& frame, double voxel_m)
     : base_(base_of(frame)),
       voxel_m_(voxel_m),
       step_m_(std::ldexp(1.0, std::max(-30, std::ilogb(voxel_m) + 1 - 32))),
-      steps_per_m_(1.0 / step_m_) {}
+      steps_per_m_(1.0 / step_m_),
+      steps_per_voxel_(std::llround(voxel_m * steps_per_m_)) {}
 
 VoxelMoments& VoxelMoments::operator+=(const VoxelMoments& other) {
   n_ += other.n_;
@@ -55,39 +53,35 @@ VoxelMoments& VoxelMoments::operator-=(const VoxelMoments& other) {
   return *this;
 }
 
-void VoxelMoments::add_moved(const VoxelMoments& other, const std::array<std::int64_t, 3>& by) {
-  if ((by[0] | by[1] | by[2]) == 0) {
-    *this += other;
-    return;
-  }
-  // In unsigned words, which wrap: what comes out is not negative.
-  using Integer = WideSum::Integer;
-  const auto wrapped = [](std::int64_t v) { return static_cast<Integer>(static_cast<Signed>(v)); };
-  const Integer n = other.n_;
-  n_ += other.n_;
+void VoxelMoments::move(const Corner& by) {
+  if (n_ == 0) return;
   std::size_t product = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    sum_[i] += other.sum_[i] + other.n_ * static_cast<std::uint64_t>(by[i]);
     for (std::size_t k = i; k < 3; ++k, ++product) {
-      const Integer moved = other.products_[product].value() + wrapped(by[k]) * other.sum_[i] +
-                            wrapped(by[i]) * other.sum_[k] + n * wrapped(by[i]) * wrapped(by[k]);
-      products_[product] += wide(moved);
+      products_[product] +=
+          wide(wrapped(by[k]) * sum_[i] + wrapped(by[i]) * sum_[k] + n_ * wrapped(by[i]) * wrapped(by[k]));
     }
   }
+  for (std::size_t i = 0; i < 3; ++i) sum_[i] += n_ * static_cast<std::uint64_t>(by[i]);
 }
 
-Gaussian VoxelMoments::gaussian(double step_m) const {
+Gaussian VoxelMoments::gaussian(double step_m, const Corner& from) const {
   const auto n = static_cast<double>(n_);
   Gaussian gaussian;
   gaussian.n = n_;
+  std::array<Integer, 3> sums;  // without having wrapped at 2^64
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::uint64_t near_sum = sum_[i] - n_ * static_cast<std::uint64_t>(from[i]);
+    gaussian.mean[static_cast<Eigen::Index>(i)] = static_cast<double>(near_sum) / n * step_m;
+    sums[i] = near_sum + n_ * wrapped(from[i]);
+  }
   std::size_t product = 0;
-  for (int row = 0; row < 3; ++row) {
-    const std::uint64_t sum = sum_[static_cast<std::size_t>(row)];
-    gaussian.mean[row] = static_cast<double>(sum) / n * step_m;
-    for (int column = row; column < 3; ++column) {
-      const std::uint64_t other_sum = sum_[static_cast<std::size_t>(column)];
-      const double scatter = scaled_scatter(n_, products_[product++], sum, other_sum) / n * (step_m * step_m);
-      gaussian.scatter(row, column) = gaussian.scatter(column, row) = scatter;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = i; k < 3; ++k) {
+      // Exact, as it is at most 2^126 for points within 2^32 steps, and then rounded.
+      const auto scaled = static_cast<Signed>(n_ * products_[product++].value() - sums[i] * sums[k]);
+      const auto row = static_cast<Eigen::Index>(i), column = static_cast<Eigen::Index>(k);
+      gaussian.scatter(row, column) = gaussian.scatter(column, row) = in_double(scaled) / n * (step_m * step_m);
     }
   }
   return gaussian;

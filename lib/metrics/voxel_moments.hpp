@@ -13,6 +13,9 @@ namespace cmap {
 /// An offset from the corner of a voxel in whole steps.
 using OffsetSteps = std::array<std::uint32_t, 3>;
 
+/// A place in a frame of voxels, in whole steps from the corner of its voxel of key 0.
+using Corner = std::array<std::int64_t, 3>;
+
 /// Offsets of points from the corners of their voxels, rounded to steps of 2^-30 m; where voxels have 4 m or more, to
 /// the power of two of which at most 2^32 reach across one. The same in every frame of voxels of that size.
 class VoxelSteps {
@@ -20,6 +23,11 @@ class VoxelSteps {
   VoxelSteps(const VoxelFrame& frame, double voxel_m);
 
   double step_m() const { return step_m_; }
+  /// Voxels are as many whole steps apart, whatever is left over.
+  std::int64_t steps_per_voxel() const { return steps_per_voxel_; }
+  Corner corner(const VoxelKey& voxel) const {
+    return {voxel.x * steps_per_voxel_, voxel.y * steps_per_voxel_, voxel.z * steps_per_voxel_};
+  }
   OffsetSteps offset(const Eigen::Vector3d& world, const VoxelKey& voxel) const {
     return {steps(world.x(), base_.x() + voxel.x), steps(world.y(), base_.y() + voxel.y),
             steps(world.z(), base_.z() + voxel.z)};
@@ -31,10 +39,13 @@ class VoxelSteps {
 
   Eigen::Vector3d base_;  ///< index of the voxel of key 0: a whole number
   double voxel_m_, step_m_, steps_per_m_;
+  std::int64_t steps_per_voxel_;
 };
 
-/// Number, sums and sums of products of a voxel's points about its corner, in steps: whole numbers, so that neither the
-/// order nor the grouping of the points changes a bit. For up to 2^31 points. Not thread-safe.
+/// Number, sums and sums of products of a voxel's points about some corner, in steps: whole numbers, so that neither
+/// the order nor the grouping of the points changes a bit. Words wrap: about a far corner the sums are right but for
+/// multiples of 2^64 and 2^128, which cancel where what is asked for is about a near one. For up to 2^31 points. Not
+/// thread-safe.
 class VoxelMoments {
  public:
   void add(const OffsetSteps& at) {
@@ -53,12 +64,12 @@ class VoxelMoments {
   VoxelMoments& operator+=(const VoxelMoments& other);
   /// Takes points off that are among them.
   VoxelMoments& operator-=(const VoxelMoments& other);
-  /// Adds points moved by these steps, after which none may lie before the corner.
-  void add_moved(const VoxelMoments& other, const std::array<std::int64_t, 3>& by);
+  /// Moves the points, whose sums have not wrapped yet, away from the corner.
+  void move(const Corner& by);
 
   std::uint64_t n() const { return n_; }
-  /// Mean from the corner and scatter, meters; of at least one point.
-  Gaussian gaussian(double step_m) const;
+  /// Mean from this corner, less than 2^33 steps before any of the points, and scatter, meters; of at least one point.
+  Gaussian gaussian(double step_m, const Corner& from = {}) const;
 
   friend bool operator==(const VoxelMoments&, const VoxelMoments&) = default;
 

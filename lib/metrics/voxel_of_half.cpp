@@ -14,11 +14,13 @@ struct VoxelCount {
 };
 
 struct CountUse {
+  const VoxelFrame* frame;
   std::vector<VoxelCount> voxels;
-  void voxel(int, const VoxelIndex& index, const PhaseVoxel<WideColorSums>& sums) {
-    voxels.push_back({index, sums.reference.n(), sums.estimate.n()});
+
+  void voxel(int, const VoxelKey& key, const PhaseVoxel<WideColorSums>& sums) {
+    voxels.push_back({frame->index(key), sums.reference.n(), sums.estimate.n()});
   }
-  void halves(const WideColorSums&, const WideColorSums&) {}
+  void halves(const VoxelKey&, const WideColorSums&, const WideColorSums&) {}
 };
 
 /// Whether voxels of enough points of both hold half of the points of both.
@@ -56,7 +58,8 @@ std::optional<double> voxel_of_half(const MapPair& pair, double voxel_m, std::ui
   const PhasedFrame frame(united(pair.reference.index.bounds(), pair.estimate.index.bounds()), voxel_m, 1);
   const WideColorSource source(maps_of(pair), false);
   std::vector<VoxelCount> voxels;
-  for (const CountUse& use : PhaseFold<WideColorSource, CountUse>(maps_of(pair), frame, source).run({})) {
+  const PhaseFold<WideColorSource, CountUse> fold(maps_of(pair), frame, source);
+  for (const CountUse& use : fold.run({&frame.voxels(), {}})) {
     std::ranges::copy(use.voxels, std::back_inserter(voxels));
   }
   for (int doublings = 0; doublings < kMostDoublings; ++doublings) {

@@ -16,51 +16,53 @@ struct PlaceSource {
   using Moments = VoxelMoments;
 
   PlaceSource(const PhasedFrame& frame, bool with_halves)
-      : halves(with_halves), steps_of(frame.voxels(), frame.voxels().size_m()) {
-    // A phase's voxel begins with part m - k of the voxel before its own, or a little earlier, as offsets are rounded.
-    constexpr double kMargin = 64.0;
-    const int m = frame.parts_per_axis();
-    const double voxel = frame.voxels().size_m() / steps_of.step_m();
-    for (int k = 1; k < m; ++k) {
-      const double begin = std::floor(voxel * (m - k) / m - kMargin);
-      corner_steps[static_cast<std::size_t>(k)] = {static_cast<std::int64_t>(std::round(voxel) - begin),
-                                                   -static_cast<std::int64_t>(begin)};
-    }
-  }
+      : halves(with_halves), steps_of(frame.voxels(), frame.voxels().size_m()), m(frame.parts_per_axis()) {}
 
   bool counts(const IndexedMap&, std::size_t) const { return true; }
   void add(Moments& moments, const IndexedMap& map, std::size_t slot, const VoxelKey& voxel) const {
     moments.add(steps_of.offset(map.index.points.world(slot), voxel));
   }
-  static constexpr bool kHasCorners = true;
-  void merge(Moments& into, const Moments& part, int axis, int shift, int after) const {
-    std::array<std::int64_t, 3> by{};
-    by[static_cast<std::size_t>(axis)] = corner_steps[static_cast<std::size_t>(shift)][static_cast<std::size_t>(after)];
-    into.add_moved(part, by);
+  void to_frame(Moments& moments, const VoxelKey& voxel) const { moments.move(steps_of.corner(voxel)); }
+
+  /// Of a phase's voxel, before which none of its points lies: offsets are rounded.
+  Corner corner(int phase, const VoxelKey& voxel) const {
+    constexpr std::int64_t kMargin = 64;
+    Corner at = steps_of.corner(voxel);
+    const std::int64_t voxel_steps = steps_of.steps_per_voxel();
+    const std::array<int, 3> shift{phase / (m * m), phase / m % m, phase % m};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (shift[axis] > 0) at[axis] -= voxel_steps * shift[axis] / m + kMargin;
+    }
+    return at;
   }
 
   bool halves;
   VoxelSteps steps_of;
-  /// By shift: what offsets in the voxel of a phase's own index, and in the one before it, have to move.
-  std::array<std::array<std::int64_t, 2>, 3> corner_steps{};
+  int m;
 };
 
 /// Takes the voxels of one task.
 struct PlaceUse {
+  const VoxelFrame* voxels;
+  const PlaceSource* source;
   std::uint64_t min_points;
-  double step_m;
   VoxelWasserstein found;
 
-  void voxel(int phase, const VoxelIndex& index, const PhaseVoxel<VoxelMoments>& sums) {
+  void voxel(int phase, const VoxelKey& key, const PhaseVoxel<VoxelMoments>& sums) {
     if (sums.reference.n() < min_points || sums.estimate.n() < min_points) return;
-    const GaussianPair pair{index, sums.reference.gaussian(step_m), sums.estimate.gaussian(step_m)};
+    const Corner corner = source->corner(phase, key);
+    const GaussianPair pair{voxels->index(key), gaussian(sums.reference, corner), gaussian(sums.estimate, corner)};
     found.by_phase[static_cast<std::size_t>(phase)].push_back(
-        {index, wasserstein_distance(pair.reference, pair.estimate)});
+        {pair.index, wasserstein_distance(pair.reference, pair.estimate)});
     if (phase == 0) found.gaussians.push_back(pair);
   }
-  void halves(const VoxelMoments& one, const VoxelMoments& other) {
+  void halves(const VoxelKey& key, const VoxelMoments& one, const VoxelMoments& other) {
     if (one.n() < min_points || other.n() < min_points) return;
-    found.of_halves.push_back(wasserstein_distance(one.gaussian(step_m), other.gaussian(step_m)));
+    const Corner corner = source->corner(0, key);
+    found.of_halves.push_back(wasserstein_distance(gaussian(one, corner), gaussian(other, corner)));
+  }
+  Gaussian gaussian(const VoxelMoments& sums, const Corner& corner) const {
+    return sums.gaussian(source->steps_of.step_m(), corner);
   }
 };
 
@@ -122,7 +124,7 @@ VoxelWasserstein voxel_wasserstein(const MapPair& pair, const PhaseOptions& opti
   const PlaceSource source(frame, options.halves);
   VoxelWasserstein all;
   all.by_phase.resize(static_cast<std::size_t>(frame.n_phases()));
-  const PlaceUse prototype{std::max<std::uint64_t>(options.min_points, 2), source.steps_of.step_m(), all};
+  const PlaceUse prototype{&frame.voxels(), &source, std::max<std::uint64_t>(options.min_points, 2), all};
   for (const PlaceUse& use : PhaseFold<PlaceSource, PlaceUse>(maps_of(pair), frame, source).run(prototype)) {
     std::ranges::copy(use.found.gaussians, std::back_inserter(all.gaussians));
     std::ranges::copy(use.found.of_halves, std::back_inserter(all.of_halves));

@@ -16,10 +16,9 @@ struct PlacedSums {
 };
 
 /// Sums windows of kParts parts in a row, whose places are `stride` apart: the window at w is of those at w, w +
-/// stride, w + 2 stride. Calls merge(sums, part, w) for each of its parts and then emit(w, sums). The parts are ordered
-/// by place, and so are the windows.
-template <int kParts, class Sums, class Merge, class Emit>
-void sum_windows(std::span<const PlacedSums<Sums>> parts, std::int32_t stride, Merge merge, Emit emit) {
+/// stride, w + 2 stride. Calls emit(w, sums). The parts are ordered by place, and so are the windows.
+template <int kParts, class Sums, class Emit>
+void sum_windows(std::span<const PlacedSums<Sums>> parts, std::int32_t stride, Emit emit) {
   constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::max();
   std::array<std::size_t, kParts> next{};      // the first part that was not yet some window's first, second, third
   std::array<std::int32_t, kParts> window_of;  // that would have it there
@@ -32,11 +31,44 @@ void sum_windows(std::span<const PlacedSums<Sums>> parts, std::int32_t stride, M
     Sums sums{};
     for (std::size_t k = 0; k < kParts; ++k) {
       if (window_of[k] != window) continue;
-      merge(sums, parts[next[k]++], window);
+      sums += parts[next[k]++].sums;
       find_window(k);
     }
     emit(window, sums);
   }
 }
+
+/// The same with a stride of 1, of parts that are given one by one.
+template <int kParts, class Sums>
+class RowWindows {
+ public:
+  template <class Emit>
+  void add(std::int32_t place, const Sums& part, Emit emit) {
+    const std::int32_t n_done = std::min(place - last_, kParts);
+    for (std::int32_t i = 0; i < n_done; ++i) {
+      if (is_open_) emit(last_ + 1 - kParts + i, oldest());
+      oldest() = part;
+      turn();
+    }
+    is_open_ = true;
+    last_ = place;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(kParts - n_done); ++i) open_[(oldest_ + i) % kParts] += part;
+  }
+  /// After the last part.
+  template <class Emit>
+  void finish(Emit emit) {
+    for (std::int32_t i = 0; i < kParts && is_open_; ++i, turn()) emit(last_ + 1 - kParts + i, oldest());
+    is_open_ = false;
+  }
+
+ private:
+  Sums& oldest() { return open_[oldest_]; }
+  void turn() { oldest_ = (oldest_ + 1) % kParts; }
+
+  std::array<Sums, kParts> open_{};  ///< the windows that have the last part, in turn
+  std::size_t oldest_ = 0;
+  bool is_open_ = false;
+  std::int32_t last_ = -kParts;
+};
 
 }  // namespace cmap
