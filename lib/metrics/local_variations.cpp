@@ -1,98 +1,106 @@
 #include <algorithm>
 #include <cmath>
-#include <ranges>
+#include <limits>
 
 #include "cmap/core/exact_sum.hpp"
 #include "cmap/core/parallel.hpp"
 #include "cmap/metrics/wasserstein.hpp"
+#include "simd/kernels.hpp"
 
 namespace cmap {
 namespace {
 
-/// Where the voxels of each x begin, and the end.
-std::vector<std::size_t> rows_of(std::span<const VoxelDistance> voxels) {
-  std::vector<std::size_t> rows;
-  for (std::size_t i = 0; i < voxels.size(); ++i) {
-    if (i == 0 || voxels[i].index[0] != voxels[i - 1].index[0]) rows.push_back(i);
+/// Voxels as the kernels read them.
+class VoxelRows {
+ public:
+  struct Row {
+    std::int64_t x;
+    std::size_t begin, end;
+  };
+
+  explicit VoxelRows(std::span<const VoxelDistance> voxels) {
+    for (const VoxelDistance& voxel : voxels) {
+      const auto [x, y, z] = voxel.index;
+      if (rows_.empty() || rows_.back().x != x) {
+        end_row();
+        rows_.push_back({x, y_.size(), y_.size()});
+      }
+      place_.push_back(y_.size());
+      add(static_cast<double>(y), static_cast<double>(z), voxel.distance_m);
+      rows_.back().end = y_.size();
+    }
+    end_row();
   }
-  rows.push_back(voxels.size());
-  return rows;
-}
+
+  std::span<const Row> rows() const { return rows_; }
+  double y(std::size_t place) const { return y_[place]; }
+  double distance_m(std::size_t place) const { return distance_m_[place]; }
+  std::size_t place(std::size_t voxel) const { return place_[voxel]; }
+
+  NearSums near_sums(std::span<const Stretch> stretches, std::size_t center, double radius) const {
+    const RowsOfVoxels voxels{y_.data(), z_.data(), distance_m_.data()};
+    return metric_kernels().near_sums(voxels, stretches.data(), stretches.size(), center, radius);
+  }
+
+ private:
+  void add(double y, double z, double distance_m) {
+    y_.push_back(y);
+    z_.push_back(z);
+    distance_m_.push_back(distance_m);
+  }
+  void end_row() {
+    for (std::size_t i = 0; i < RowsOfVoxels::kAtOnce; ++i) add(std::numeric_limits<double>::infinity(), 0.0, 0.0);
+  }
+
+  std::vector<Row> rows_;
+  std::vector<std::size_t> place_;  ///< by voxel
+  std::vector<double> y_, z_, distance_m_;
+};
 
 /// What is within a radius of a voxel in x and y, as the voxel moves on in their order: of each row in reach voxels
 /// that follow each other, whose ends move on with it.
 class Neighborhood {
  public:
-  struct Stretch {
-    std::size_t begin, end, row_end;
-  };
+  Neighborhood(const VoxelRows& voxels, int radius) : voxels_(voxels), radius_(radius) {}
 
-  Neighborhood(std::span<const VoxelDistance> voxels, std::span<const std::size_t> rows, int radius)
-      : voxels_(voxels), rows_(rows), radius_(radius) {}
-
-  std::span<const Stretch> around(const VoxelDistance& center) {
-    if (stretches_.empty() || center.index[0] != x_) enter_row(center);
-    const std::int64_t lowest = center.index[1] - radius_, highest = center.index[1] + radius_;
-    for (Stretch& stretch : stretches_) {
-      while (stretch.begin < stretch.row_end && y(stretch.begin) < lowest) ++stretch.begin;
-      while (stretch.end < stretch.row_end && y(stretch.end) <= highest) ++stretch.end;
+  std::span<const Stretch> around(const VoxelIndex& center) {
+    if (stretches_.empty() || center[0] != x_) enter_row(center[0]);
+    const auto y = static_cast<double>(center[1]);
+    for (std::size_t i = 0; i < stretches_.size(); ++i) {
+      auto& [begin, end] = stretches_[i];
+      const std::size_t row_end = rows_[i].end;
+      while (begin < row_end && voxels_.y(begin) < y - radius_) ++begin;
+      while (end < row_end && voxels_.y(end) <= y + radius_) ++end;
     }
     return stretches_;
   }
 
  private:
-  std::int64_t y(std::size_t voxel) const { return voxels_[voxel].index[1]; }
+  using Row = VoxelRows::Row;
 
-  void enter_row(const VoxelDistance& center) {
-    x_ = center.index[0];
+  void enter_row(std::int64_t x) {
+    x_ = x;
+    const auto first = std::ranges::lower_bound(voxels_.rows(), x - radius_, {}, &Row::x);
+    const auto end = std::ranges::upper_bound(voxels_.rows(), x + radius_, {}, &Row::x);
+    rows_ = {first, end};
     stretches_.clear();
-    const auto x = [&](std::size_t row) { return voxels_[rows_[row]].index[0]; };
-    const auto all = std::views::iota(std::size_t{0}, rows_.size() - 1);
-    const auto first = std::ranges::partition_point(all, [&](std::size_t row) { return x(row) < x_ - radius_; });
-    for (std::size_t row = *first; row + 1 < rows_.size() && x(row) <= x_ + radius_; ++row) {
-      const auto of_row = std::views::iota(rows_[row], rows_[row + 1]);
-      const auto is_before = [&](std::size_t voxel) { return y(voxel) < center.index[1] - radius_; };
-      const std::size_t begin = *std::ranges::partition_point(of_row, is_before);
-      stretches_.push_back({begin, begin, rows_[row + 1]});
-    }
+    for (const Row& row : rows_) stretches_.push_back({row.begin, row.begin});
   }
 
-  std::span<const VoxelDistance> voxels_;
-  std::span<const std::size_t> rows_;
+  const VoxelRows& voxels_;
   int radius_;
   std::int64_t x_ = 0;
+  std::span<const Row> rows_;  ///< in reach in x
   std::vector<Stretch> stretches_;
 };
-
-/// Differences of the distances around a voxel to its own, which is among them.
-void find_differences(std::span<const VoxelDistance> voxels, const VoxelDistance& center,
-                      std::span<const Neighborhood::Stretch> around, int radius, std::vector<double>& differences) {
-  std::size_t n = 0;
-  for (const Neighborhood::Stretch& stretch : around) n += stretch.end - stretch.begin;
-  differences.resize(n);
-  std::size_t n_near = 0;
-  for (const Neighborhood::Stretch& stretch : around) {
-    for (std::size_t i = stretch.begin; i < stretch.end;
-         ++i) {  // without a branch: which of them are near cannot be foretold
-      differences[n_near] = voxels[i].distance_m - center.distance_m;
-      n_near += std::abs(voxels[i].index[2] - center.index[2]) <= radius ? 1 : 0;
-    }
-  }
-  differences.resize(n_near);
-}
 
 /// Coefficient of variation of the distances around a voxel; NaN where the voxel is to be skipped.
 /// Differences to the voxel's own distance are summed: equal distances give a variance of exactly 0, and the voxel
 /// itself adds nothing.
-double local_variation(double center_m, std::span<const double> differences) {
-  double sum = 0.0, sum_sq = 0.0;
-  for (const double difference : differences) {
-    sum += difference;
-    sum_sq += difference * difference;
-  }
-  const auto n = static_cast<double>(differences.size() - 1);
-  const double mean = center_m + sum / n;
-  const double variance = std::max(0.0, sum_sq / n - (sum / n) * (sum / n));
+double local_variation(double center_m, const NearSums& sums) {
+  const double n = sums.n - 1.0;
+  const double mean = center_m + sums.sum / n;
+  const double variance = std::max(0.0, sums.sum_sq / n - (sums.sum / n) * (sums.sum / n));
   return n > 0.0 && mean > 0.0 ? std::sqrt(variance) / mean : std::nan("");
 }
 
@@ -100,14 +108,13 @@ double local_variation(double center_m, std::span<const double> differences) {
 
 std::vector<double> local_variations(std::span<const VoxelDistance> voxels, int radius_voxels) {
   constexpr std::size_t kVoxelChunk = 512;
-  const std::vector<std::size_t> rows = rows_of(voxels);
+  const VoxelRows rows(voxels);
   std::vector<double> variations(voxels.size());
   parallel_chunks(voxels.size(), kVoxelChunk, [&](std::size_t begin, std::size_t end) {
-    Neighborhood neighborhood(voxels, rows, radius_voxels);
-    std::vector<double> differences;
+    Neighborhood neighborhood(rows, radius_voxels);
     for (std::size_t i = begin; i < end; ++i) {
-      find_differences(voxels, voxels[i], neighborhood.around(voxels[i]), radius_voxels, differences);
-      variations[i] = local_variation(voxels[i].distance_m, differences);
+      const std::span<const Stretch> near = neighborhood.around(voxels[i].index);
+      variations[i] = local_variation(voxels[i].distance_m, rows.near_sums(near, rows.place(i), radius_voxels));
     }
   });
   return variations;

@@ -96,7 +96,7 @@ double determinant(const Eigen::Matrix3d& m) {
 /// noise in both. Newton's method from above: r <= sqrt(3 e1), and r - sqrt(e1 + 2 q(r)) is convex.
 double trace_of_root(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
   constexpr int kMostSteps = 8;
-  constexpr double kNearEnough = 1e-9;  // each step squares what is missing
+  constexpr double kNearEnough = 1e-7;  // each step leaves less than the square of what was missing
   const Eigen::Matrix3d cofactors_a = cofactors(a), cofactors_b = cofactors(b);
   const double e1 = std::max(0.0, a.cwiseProduct(b).sum());
   const double e2 = std::max(0.0, cofactors_a.cwiseProduct(cofactors_b).sum());

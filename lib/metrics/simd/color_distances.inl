@@ -46,14 +46,14 @@ struct Symmetric {
 /// enough stays as it is.
 void sums_of_roots(const Lanes& e1, const Lanes& e2, const Lanes& root_e3, Lanes& r) {
   constexpr int kMostSteps = 8;
-  constexpr double kNearEnough = 1e-9;  // each step squares what is missing
+  constexpr double kNearEnough = 1e-7;  // each step leaves less than the square of what was missing
   Lanes open;
   for (std::size_t i = 0; i < kLanes; ++i) {
     r[i] = square_root(e1[i] + 2.0 * square_root(e2[i] + 2.0 * root_e3[i] * square_root(3.0 * e1[i])));
     open[i] = 1.0;
   }
   for (int step = 0; step < kMostSteps; ++step) {
-    double n_open = 0.0;
+    std::int32_t n_open = 0;
     for (std::size_t i = 0; i < kLanes; ++i) {
       const double q = square_root(e2[i] + 2.0 * root_e3[i] * r[i]);
       const double next = square_root(e1[i] + 2.0 * q);
@@ -61,9 +61,9 @@ void sums_of_roots(const Lanes& e1, const Lanes& e2, const Lanes& root_e3, Lanes
       const double change = open[i] * ((next - r[i]) / (1.0 - slope));
       r[i] += change;
       open[i] = __builtin_fabs(change) > kNearEnough * r[i] ? 1.0 : 0.0;
-      n_open += open[i];
+      n_open += open[i] > 0.0 ? 1 : 0;
     }
-    if (n_open == 0.0) break;
+    if (n_open == 0) break;
   }
 }
 

@@ -30,11 +30,32 @@ struct ColorPairLanes {
   alignas(64) std::uint32_t reference[kWords][kLanes], estimate[kWords][kLanes];
 };
 
+/// Voxels in rows of the same x, each of which ends with as many that are nowhere (y is infinite) as are looked at at
+/// once.
+struct RowsOfVoxels {
+  static constexpr std::size_t kAtOnce = 8;
+  const double *y, *z;  ///< indices
+  const double* distance_m;
+};
+
+/// Some voxels of one row that follow each other.
+struct Stretch {
+  std::size_t begin, end;
+};
+
+/// The number of voxels, and sums of differences of their distances to that of one among them.
+struct NearSums {
+  double n, sum, sum_sq;
+};
+
 /// One set of kernels for each instruction set, all with bitwise equal results, which no lane's neighbors change.
 struct MetricKernels {
   void (*grid_places)(const PartGrid& grid, const PointBlock& points, GridPlaces& places);
   /// The 2-Wasserstein distances of the Gaussians of such voxels, of at least two points each, in levels of 8 bit.
   void (*color_distances)(const ColorPairLanes& pairs, double* distances);
+  /// Of the voxels in the stretches, and of those beyond their ends, that are within the radius in y and z.
+  NearSums (*near_sums)(const RowsOfVoxels& voxels, const Stretch* stretches, std::size_t n_stretches,
+                        std::size_t center, double radius);
 };
 
 /// The kernels of one level; `metric_kernels()` are those of simd_level(). The level must be one this processor has.

@@ -9,11 +9,12 @@
 // clang-format off
 #include "simd/color_distances.inl"
 #include "simd/grid_places.inl"
+#include "simd/near_sums.inl"
 // clang-format on
 
 namespace cmap::CMAP_LANES {
 
 extern const MetricKernels kMetricKernels;
-const MetricKernels kMetricKernels{&grid_places, &color_distances};
+const MetricKernels kMetricKernels{&grid_places, &color_distances, &near_sums};
 
 }  // namespace cmap::CMAP_LANES
