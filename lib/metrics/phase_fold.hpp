@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <iterator>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -11,6 +10,7 @@
 
 #include "cmap/core/parallel.hpp"
 #include "cmap/core/random_hash.hpp"
+#include "cmap/geometry/voxel_map.hpp"
 #include "cmap/metrics/map_pair.hpp"
 #include "cmap/metrics/metric_inputs.hpp"
 #include "grid_places.hpp"
@@ -97,7 +97,7 @@ class PhaseFold {
         std::span<const PairedCell>(cells), [](const PairedCell& cell) { return cell.n_points(); },
         [](std::size_t) { return true; });
     std::vector<Use> used(tasks.size(), prototype);
-    std::vector<std::vector<OpenVoxel>> open(tasks.size());
+    std::vector<OpenByPhase> open(tasks.size(), OpenByPhase(static_cast<std::size_t>(frame_.n_phases())));
     TablePool pool(edge_);
     parallel_chunks(tasks.size(), 1, [&](std::size_t i, std::size_t) {
       std::unique_ptr<Tables> tables = pool.take();
@@ -122,17 +122,10 @@ class PhaseFold {
 
   /// A voxel of which other cells may hold parts, too.
   struct OpenVoxel {
-    int phase;
     VoxelKey key;
     Voxel sums;
-    /// By phase and key: keys are not negative.
-    std::array<std::uint64_t, 2> order() const {
-      const auto words = [](std::int64_t high, std::int64_t low) {
-        return static_cast<std::uint64_t>(high << 32 | low);
-      };
-      return {words(phase, key.x), words(key.y, key.z)};
-    }
   };
+  using OpenByPhase = std::vector<std::vector<OpenVoxel>>;
 
   /// Of one place on an axis: the phase of the voxel of which it is the first part, and the keys in the cell of that
   /// voxel and of the one that holds the part in the grid that is not shifted.
@@ -253,13 +246,13 @@ class PhaseFold {
   }
 
   void hand_out(const VoxelKey& cell, std::int32_t place, const Voxel& sums, const LocalGrid<Moments>& half, Use& use,
-                std::vector<OpenVoxel>& open) const {
+                OpenByPhase& open) const {
     const std::array<AxisPlace, 3> on_axis = on_axes(place);
     const auto& [x, y, z] = on_axis;
     const int phase = (x.shift * m_ + y.shift) * m_ + z.shift;
     const VoxelKey in_cell{x.key, y.key, z.key}, key = key_of(cell, in_cell);
     const auto at_border = [](const AxisPlace& v) { return v.shift > 0 && (v.key == 0 || v.key == kVoxels); };
-    if (std::ranges::any_of(on_axis, at_border)) return open.push_back({phase, key, sums});
+    if (std::ranges::any_of(on_axis, at_border)) return open[static_cast<std::size_t>(phase)].push_back({key, sums});
     use.voxel(phase, key, sums);
     if (phase > 0 || !source_.halves) return;
     if (const Moments* half_here = half.find(place_of(in_cell))) {
@@ -280,29 +273,16 @@ class PhaseFold {
   }
 
   /// Puts the open voxels of all tasks together.
-  void close(const std::vector<std::vector<OpenVoxel>>& by_task, const Use& prototype, std::vector<Use>& used) const {
-    struct Ordered {
-      std::array<std::uint64_t, 2> order;
-      const OpenVoxel* voxel;
-    };
-    std::vector<Ordered> open;
-    for (const auto& voxels : by_task) {
-      for (const OpenVoxel& voxel : voxels) open.push_back({voxel.order(), &voxel});
-    }
-    std::ranges::sort(open, [](const Ordered& a, const Ordered& b) {
-      return a.order[0] != b.order[0] ? a.order[0] < b.order[0] : a.order[1] < b.order[1];
-    });
-    Use rest = prototype;
-    for (auto first = open.begin(); first != open.end();) {
-      Voxel sums = first->voxel->sums;
-      auto next = std::next(first);
-      for (; next != open.end() && next->order[0] == first->order[0] && next->order[1] == first->order[1]; ++next) {
-        sums += next->voxel->sums;
+  void close(const std::vector<OpenByPhase>& by_task, const Use& prototype, std::vector<Use>& used) const {
+    const std::size_t n_tasks = used.size();
+    used.resize(n_tasks + static_cast<std::size_t>(frame_.n_phases()), prototype);
+    parallel_chunks(used.size() - n_tasks, 1, [&](std::size_t phase, std::size_t) {
+      VoxelMap<Voxel> voxels;
+      for (const OpenByPhase& open : by_task) {
+        for (const auto& [key, sums] : open[phase]) voxels[key] += sums;
       }
-      rest.voxel(first->voxel->phase, first->voxel->key, sums);
-      first = next;
-    }
-    used.push_back(std::move(rest));
+      for (const auto& [key, sums] : voxels.entries()) used[n_tasks + phase].voxel(static_cast<int>(phase), key, sums);
+    });
   }
 
   BothSides<const IndexedMap*> maps_;
