@@ -31,7 +31,7 @@ class ColorSums {
     const Words terms{1, r, g, b, r * r, r * g, r * b, g * g, g * b, b * b};
     for (std::size_t i = 0; i < terms.size(); ++i) sums_[i] += terms[i];
   }
-  [[gnu::noinline]] ColorSums& operator+=(const ColorSums& other) {
+  ColorSums& operator+=(const ColorSums& other) {
     const Words terms = other.sums_;  // of which compilers know that they are not those that change: several at a time
     for (std::size_t i = 0; i < terms.size(); ++i) sums_[i] += terms[i];
     return *this;

@@ -29,7 +29,8 @@ template <class Moments>
 struct PhaseVoxel {
   Moments reference{}, estimate{};
 
-  PhaseVoxel& operator+=(const PhaseVoxel& other) {
+  /// Out of line: where compilers can see that sums are of one function they keep each word by itself.
+  [[gnu::noinline]] PhaseVoxel& operator+=(const PhaseVoxel& other) {
     reference += other.reference;
     estimate += other.estimate;
     return *this;
