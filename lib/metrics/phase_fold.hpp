@@ -87,7 +87,9 @@ class PhaseFold {
         places_on_axis_(static_cast<std::size_t>(edge_)) {
     for (std::int32_t at = 0; at < edge_; ++at) {
       const std::int32_t shift = (m_ - 1 - at % m_) % m_, part = at - (m_ - 1);
-      places_on_axis_[static_cast<std::size_t>(at)] = {shift, (part + shift) / m_, part / m_};
+      const std::int32_t key = (part + shift) / m_;
+      const bool is_open = shift > 0 && (key == 0 || key == kVoxels);
+      places_on_axis_[static_cast<std::size_t>(at)] = {shift, key, part / m_, is_open};
     }
   }
 
@@ -132,6 +134,7 @@ class PhaseFold {
   /// voxel and of the one that holds the part in the grid that is not shifted.
   struct AxisPlace {
     std::int32_t shift, key, part_key;
+    bool is_open;  ///< whether another cell may hold parts of that voxel, too
   };
 
   /// Divides places, by a product: a cell has less than 2^20 of them.
@@ -248,12 +251,10 @@ class PhaseFold {
 
   void hand_out(const VoxelKey& cell, std::int32_t place, const Voxel& sums, const LocalGrid<Moments>& half, Use& use,
                 OpenByPhase& open) const {
-    const std::array<AxisPlace, 3> on_axis = on_axes(place);
-    const auto& [x, y, z] = on_axis;
+    const auto [x, y, z] = on_axes(place);
     const int phase = (x.shift * m_ + y.shift) * m_ + z.shift;
     const VoxelKey in_cell{x.key, y.key, z.key}, key = key_of(cell, in_cell);
-    const auto at_border = [](const AxisPlace& v) { return v.shift > 0 && (v.key == 0 || v.key == kVoxels); };
-    if (std::ranges::any_of(on_axis, at_border)) return open[static_cast<std::size_t>(phase)].push_back({key, sums});
+    if (x.is_open || y.is_open || z.is_open) return open[static_cast<std::size_t>(phase)].push_back({key, sums});
     use.voxel(phase, key, sums);
     if (phase > 0 || !source_.halves) return;
     if (const Moments* half_here = half.find(place_of(in_cell))) {
