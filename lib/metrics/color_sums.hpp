@@ -106,9 +106,19 @@ struct ColorSource {
   }
 
   bool counts(const IndexedMap& map, std::size_t slot) const { return map.has_color_at(slot); }
-  void add(Moments& moments, const IndexedMap& map, std::size_t slot, const VoxelKey&) const {
-    const Eigen::Vector3f color = color_at(map.colors, slot);
-    moments.add({whole(color.x()), whole(color.y()), whole(color.z())});
+  struct Terms {
+    std::array<Word, kBlockSize> r, g, b;
+    std::array<Word, 3> at(std::size_t lane) const { return {r[lane], g[lane], b[lane]}; }
+  };
+  Terms terms(const IndexedMap& map, std::size_t block, const PartGrid&, const GridPlaces&) const {
+    const ColorBlock& color = map.colors[block];
+    Terms terms;
+    for (std::size_t lane = 0; lane < kBlockSize; ++lane) {
+      terms.r[lane] = whole(color.r[lane]);
+      terms.g[lane] = whole(color.g[lane]);
+      terms.b[lane] = whole(color.b[lane]);
+    }
+    return terms;
   }
   void to_frame(Moments&, const VoxelKey&) const {}
 
@@ -117,7 +127,9 @@ struct ColorSource {
   double step;             ///< unit RGB
 
  private:
-  Word whole(float level) const {
+  /// 0 of a point without a color.
+  Word whole(float color) const {
+    const float level = color > 0.0f ? color : 0.0f;
     if constexpr (sizeof(Word) == 4) return static_cast<Word>(static_cast<std::int32_t>(level));
     return static_cast<Word>(static_cast<std::int64_t>(steps_per_level * static_cast<double>(level) + 0.5));
   }

@@ -28,18 +28,24 @@ inline PartGrid part_grid(const PointBlocks& points, const VoxelFrame& frame, in
   return grid;
 }
 
-/// Hands every slot of [begin, end) to use(slot, voxel, place), the place being its part's place in its cell.
+/// Hands the slots of [begin, end), block by block, to use(first, end, places): of the points of the whole block.
 template <class Use>
-void for_places(const PointBlocks& points, const PartGrid& grid, std::size_t begin, std::size_t end, Use use) {
+void for_blocks(const PointBlocks& points, const PartGrid& grid, std::size_t begin, std::size_t end, Use use) {
   GridPlaces places;
   for (std::size_t slot = begin; slot < end;) {
     const std::size_t block = slot / kBlockSize, block_end = std::min(end, (block + 1) * kBlockSize);
     metric_kernels().grid_places(grid, points.blocks[block], places);
-    for (; slot < block_end; ++slot) {
-      const std::size_t lane = slot % kBlockSize;
-      use(slot, VoxelKey{places.x[lane], places.y[lane], places.z[lane]}, places.in_cell[lane]);
-    }
+    use(slot, block_end, places);
+    slot = block_end;
   }
+}
+
+/// Hands every slot of [begin, end) to use(slot, place), the place being its part's place in its cell.
+template <class Use>
+void for_places(const PointBlocks& points, const PartGrid& grid, std::size_t begin, std::size_t end, Use use) {
+  for_blocks(points, grid, begin, end, [&](std::size_t slot, std::size_t block_end, const GridPlaces& places) {
+    for (; slot < block_end; ++slot) use(slot, places.in_cell[slot % kBlockSize]);
+  });
 }
 
 }  // namespace cmap

@@ -62,9 +62,9 @@ inline BothSides<const IndexedMap*> maps_of(const MapPair& pair) { return {&pair
 
 /// Folds the points of a pair of maps, or of one map.
 /// `Source` has
-///   Moments                                   a voxel's sums: +=, -= and n(),
+///   Moments                                   a voxel's sums: add(terms), +=, -= and n(),
 ///   bool counts(map, slot)                    whether a point is summed,
-///   void add(Moments&, map, slot, VoxelKey)   adds it,
+///   terms(map, block, grid, places)           of the points of a block, by at(lane),
 ///   void to_frame(Moments&, VoxelKey)         where sums are about the corner of a voxel, makes them sums about the
 ///                                             corner of the frame's first, which can be merged,
 ///   bool halves                               whether a random half of the reference is asked for.
@@ -195,31 +195,36 @@ class PhaseFold {
 
   void sum_points(const PairedCell& cell, Tables& tables) const {
     for_points(Side::kEstimate, cell,
-               [&](const IndexedMap& map, std::size_t slot, const VoxelKey& voxel, std::int32_t place) {
-                 source_.add(tables.parts[place].estimate, map, slot, voxel);
+               [&](const IndexedMap&, std::size_t, const VoxelKey&, std::int32_t place, const auto& terms) {
+                 tables.parts[place].estimate.add(terms);
                });
     for_points(
         Side::kReference, cell,
-        [&](const IndexedMap& map, std::size_t slot, const VoxelKey& voxel, std::int32_t place) {
-          source_.add(tables.parts[place].reference, map, slot, voxel);
-          if (!source_.halves || (random_hash(map.index.points.original_index[slot], kHalvesSeed) & 1) == 0) return;
+        [&](const IndexedMap& map, std::size_t slot, const VoxelKey& voxel, std::int32_t place, const auto& terms) {
+          tables.parts[place].reference.add(terms);
+          if (!source_.halves) return;
+          if ((random_hash(map.index.points.original_index[slot], kHalvesSeed) & 1) == 0) return;
           constexpr std::int32_t kLocal = kVoxels - 1;
-          source_.add(tables.half[place_of({voxel.x & kLocal, voxel.y & kLocal, voxel.z & kLocal})], map, slot, voxel);
+          tables.half[place_of({voxel.x & kLocal, voxel.y & kLocal, voxel.z & kLocal})].add(terms);
         });
   }
 
-  /// Hands every point that counts to use(map, slot, voxel, place of its part).
+  /// Hands every point that counts to use(map, slot, voxel, place of its part, terms).
   template <class UsePoint>
   void for_points(Side side, const PairedCell& cell, UsePoint use) const {
     if (cell.runs.of(side).empty()) return;
     const IndexedMap& map = *maps_.of(side);
     const PointBlocks& points = map.index.points;
     const PartGrid grid = part_grid(points, frame_.voxels(), m_, kVoxels, m_ - 1);
-    for (const CellRun& run : cell.runs.of(side)) {
-      for_places(points, grid, run.begin, run.end, [&](std::size_t slot, const VoxelKey& voxel, std::int32_t place) {
-        if (source_.counts(map, slot)) use(map, slot, voxel, place);
-      });
-    }
+    const auto use_block = [&](std::size_t slot, std::size_t end, const GridPlaces& places) {
+      const auto terms = source_.terms(map, slot / kBlockSize, grid, places);
+      for (; slot < end; ++slot) {
+        if (!source_.counts(map, slot)) continue;
+        const std::size_t lane = slot % kBlockSize;
+        use(map, slot, VoxelKey{places.x[lane], places.y[lane], places.z[lane]}, places.in_cell[lane], terms.at(lane));
+      }
+    };
+    for (const CellRun& run : cell.runs.of(side)) for_blocks(points, grid, run.begin, run.end, use_block);
   }
 
   static std::int32_t place_of(const VoxelKey& in_cell) {

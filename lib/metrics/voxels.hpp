@@ -134,7 +134,7 @@ std::vector<Result> fold_voxels(const Bvh& cloud, const VoxelFrame& frame, AddPo
       if (run.cell != cell) use_cell();
       cell = run.cell;
       for_places(cloud.points, grid, run.begin, run.end,
-                 [&](std::size_t slot, const VoxelKey&, std::int32_t place) { add(voxels[place], slot); });
+                 [&](std::size_t slot, std::int32_t place) { add(voxels[place], slot); });
     }
     use_cell();
   });

@@ -19,8 +19,14 @@ struct PlaceSource {
       : halves(with_halves), steps_of(frame.voxels(), frame.voxels().size_m()), m(frame.parts_per_axis()) {}
 
   bool counts(const IndexedMap&, std::size_t) const { return true; }
-  void add(Moments& moments, const IndexedMap& map, std::size_t slot, const VoxelKey& voxel) const {
-    moments.add(steps_of.offset(map.index.points.world(slot), voxel));
+  struct Terms {
+    OffsetLanes offsets;
+    OffsetSteps at(std::size_t lane) const { return {offsets.x[lane], offsets.y[lane], offsets.z[lane]}; }
+  };
+  Terms terms(const IndexedMap& map, std::size_t block, const PartGrid& grid, const GridPlaces& places) const {
+    Terms terms;
+    metric_kernels().offsets(grid, 1.0 / steps_of.step_m(), map.index.points.blocks[block], places, terms.offsets);
+    return terms;
   }
   void to_frame(Moments& moments, const VoxelKey& voxel) const { moments.move(steps_of.corner(voxel)); }
 

@@ -43,5 +43,29 @@ void grid_places(const PartGrid& grid, const PointBlock& points, GridPlaces& pla
   }
 }
 
+/// The formulas are those of VoxelSteps.
+void axis_offsets(const PartGrid& grid, std::size_t axis, double steps_per_m, const float* points,
+                  const std::int32_t* keys, std::uint32_t* offsets) {
+  constexpr double kMost = 0x1p32 - 1.0, kWhole = 0x1p52;  // whose last bit is a whole one
+  const double origin = grid.origin[axis], voxel_m = grid.voxel_m, first = grid.first[axis];
+  double steps[kBlockSize];
+  std::uint64_t bits[kBlockSize];
+  for (std::size_t i = 0; i < kBlockSize; ++i) {
+    const double world = origin + static_cast<double>(points[i]);
+    const double rounded = (world - (first + keys[i]) * voxel_m) * steps_per_m + 0.5;
+    const double not_below = rounded > 0.0 ? rounded : 0.0;
+    steps[i] = __builtin_floor(not_below < kMost ? not_below : kMost) + kWhole;
+  }
+  __builtin_memcpy(bits, steps, sizeof(bits));
+  for (std::size_t i = 0; i < kBlockSize; ++i) offsets[i] = static_cast<std::uint32_t>(bits[i]);
+}
+
+void offsets(const PartGrid& grid, double steps_per_m, const PointBlock& points, const GridPlaces& places,
+             OffsetLanes& offsets) {
+  axis_offsets(grid, 0, steps_per_m, points.x, places.x, offsets.x);
+  axis_offsets(grid, 1, steps_per_m, points.y, places.y, offsets.y);
+  axis_offsets(grid, 2, steps_per_m, points.z, places.z, offsets.z);
+}
+
 }  // namespace
 }  // namespace cmap::CMAP_LANES

@@ -23,6 +23,11 @@ struct GridPlaces {
   alignas(64) std::int32_t x[kBlockSize], y[kBlockSize], z[kBlockSize], in_cell[kBlockSize];
 };
 
+/// Of each point of a block the offset from its voxel's corner in whole steps.
+struct OffsetLanes {
+  alignas(64) std::uint32_t x[kBlockSize], y[kBlockSize], z[kBlockSize];
+};
+
 /// The 8-bit colors of both maps in some voxels, side by side. A word is below 2^32 and a voxel of at most 2^16 points.
 struct ColorPairLanes {
   static constexpr std::size_t kLanes = 16, kWords = 10;
@@ -51,6 +56,9 @@ struct NearSums {
 /// One set of kernels for each instruction set, all with bitwise equal results, which no lane's neighbors change.
 struct MetricKernels {
   void (*grid_places)(const PartGrid& grid, const PointBlock& points, GridPlaces& places);
+  /// Rounded; a point outside of its voxel, as corners are rounded, too, counts as at the face.
+  void (*offsets)(const PartGrid& grid, double steps_per_m, const PointBlock& points, const GridPlaces& places,
+                  OffsetLanes& offsets);
   /// The 2-Wasserstein distances of the Gaussians of such voxels, of at least two points each, in levels of 8 bit.
   void (*color_distances)(const ColorPairLanes& pairs, double* distances);
   /// Of the voxels in the stretches, and of those beyond their ends, that are within the radius in y and z.

@@ -15,6 +15,6 @@
 namespace cmap::CMAP_LANES {
 
 extern const MetricKernels kMetricKernels;
-const MetricKernels kMetricKernels{&grid_places, &color_distances, &near_sums};
+const MetricKernels kMetricKernels{&grid_places, &offsets, &color_distances, &near_sums};
 
 }  // namespace cmap::CMAP_LANES
