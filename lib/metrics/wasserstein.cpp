@@ -6,6 +6,7 @@
 #include "cmap/core/exact_sum.hpp"
 #include "cmap/core/parallel.hpp"
 #include "phase_fold.hpp"
+#include "simd/kernels.hpp"
 #include "voxel_moments.hpp"
 
 namespace cmap {
@@ -101,8 +102,6 @@ double determinant(const Eigen::Matrix3d& m) {
 /// Each of the e is a product of what A and B have, so that flat ones lose no digits: a cofactor that should be 0 is
 /// noise in both. Newton's method from above: r <= sqrt(3 e1), and r - sqrt(e1 + 2 q(r)) is convex.
 double trace_of_root(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
-  constexpr int kMostSteps = 8;
-  constexpr double kNearEnough = 1e-7;  // each step leaves less than the square of what was missing
   const Eigen::Matrix3d cofactors_a = cofactors(a), cofactors_b = cofactors(b);
   const double e1 = std::max(0.0, a.cwiseProduct(b).sum());
   const double e2 = std::max(0.0, cofactors_a.cwiseProduct(cofactors_b).sum());
@@ -110,14 +109,13 @@ double trace_of_root(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
   const double most = std::sqrt(3.0 * e1);
   // 3 e1 e3 <= e2^2, which noise may not break.
   const double root_e3 = std::min(std::sqrt(determinant(a) * determinant(b)), e2 / most);
-  double r = std::sqrt(e1 + 2.0 * std::sqrt(e2 + 2.0 * root_e3 * most));
-  for (int step = 0; step < kMostSteps; ++step) {
+  double r = most;
+  for (int step = 0; step < kFixedPointSteps; ++step) r = std::sqrt(e1 + 2.0 * std::sqrt(e2 + 2.0 * root_e3 * r));
+  for (int step = 0; step < kNewtonSteps; ++step) {
     const double q = std::sqrt(e2 + 2.0 * root_e3 * r);
     const double next = std::sqrt(e1 + 2.0 * q);
     const double slope = q > 0.0 ? root_e3 / (q * next) : 0.0;  // at most 1/9
-    const double change = (next - r) / (1.0 - slope);
-    r += change;
-    if (std::abs(change) <= kNearEnough * r) break;
+    r += (next - r) / (1.0 - slope);
   }
   return r;
 }

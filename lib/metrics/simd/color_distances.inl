@@ -42,28 +42,21 @@ struct Symmetric {
           (n * words[7][i] - g * g) * by, (n * words[8][i] - g * b) * by, (n * words[9][i] - b * b) * by};
 }
 
-/// Newton's method for the sum r of the roots of three eigenvalues, from their sums of products; a lane that is near
-/// enough stays as it is.
+/// The sum r of the roots of three eigenvalues, from their sums of products.
 void sums_of_roots(const Lanes& e1, const Lanes& e2, const Lanes& root_e3, Lanes& r) {
-  constexpr int kMostSteps = 8;
-  constexpr double kNearEnough = 1e-7;  // each step leaves less than the square of what was missing
-  Lanes open;
-  for (std::size_t i = 0; i < kLanes; ++i) {
-    r[i] = square_root(e1[i] + 2.0 * square_root(e2[i] + 2.0 * root_e3[i] * square_root(3.0 * e1[i])));
-    open[i] = 1.0;
+  for (std::size_t i = 0; i < kLanes; ++i) r[i] = square_root(3.0 * e1[i]);
+  for (int step = 0; step < kFixedPointSteps; ++step) {
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      r[i] = square_root(e1[i] + 2.0 * square_root(e2[i] + 2.0 * root_e3[i] * r[i]));
+    }
   }
-  for (int step = 0; step < kMostSteps; ++step) {
-    std::int32_t n_open = 0;
+  for (int step = 0; step < kNewtonSteps; ++step) {
     for (std::size_t i = 0; i < kLanes; ++i) {
       const double q = square_root(e2[i] + 2.0 * root_e3[i] * r[i]);
       const double next = square_root(e1[i] + 2.0 * q);
       const double slope = q > 0.0 ? root_e3[i] / largest(q * next, 1e-300) : 0.0;  // at most 1/9
-      const double change = open[i] * ((next - r[i]) / (1.0 - slope));
-      r[i] += change;
-      open[i] = __builtin_fabs(change) > kNearEnough * r[i] ? 1.0 : 0.0;
-      n_open += open[i] > 0.0 ? 1 : 0;
+      r[i] += (next - r[i]) / (1.0 - slope);
     }
-    if (n_open == 0) break;
   }
 }
 

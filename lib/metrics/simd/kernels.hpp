@@ -28,6 +28,10 @@ struct OffsetLanes {
   alignas(64) std::uint32_t x[kBlockSize], y[kBlockSize], z[kBlockSize];
 };
 
+/// Of the iteration for Wasserstein distances (wasserstein.cpp), which begins with up to 1.8 times of what it looks for:
+/// whatever that is, what is off is below 1.9 %, 0.12 %, then with Newton's method 3e-8 and 1e-17 of it.
+inline constexpr int kFixedPointSteps = 2, kNewtonSteps = 2;
+
 /// The 8-bit colors of both maps in some voxels, side by side. A word is below 2^32 and a voxel of at most 2^16 points.
 struct ColorPairLanes {
   static constexpr std::size_t kLanes = 16, kWords = 10;
