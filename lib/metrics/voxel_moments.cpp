@@ -6,11 +6,6 @@
 namespace cmap {
 namespace {
 
-Eigen::Vector3d base_of(const VoxelFrame& frame) {
-  const auto [x, y, z] = frame.index(VoxelKey{});
-  return {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
-}
-
 __extension__ using Signed = __int128;
 
 /// Within an ulp: the two words of the magnitude, one after the other. Faster than the compiler's own, which rounds
@@ -30,12 +25,9 @@ WideSum wide(Integer value) { return {static_cast<std::uint64_t>(value), static_
 
 }  // namespace
 
-VoxelSteps::VoxelSteps(const VoxelFrame& frame, double voxel_m)
-    : base_(base_of(frame)),
-      voxel_m_(voxel_m),
-      step_m_(std::ldexp(1.0, std::max(-30, std::ilogb(voxel_m) + 1 - 32))),
-      steps_per_m_(1.0 / step_m_),
-      steps_per_voxel_(std::llround(voxel_m * steps_per_m_)) {}
+VoxelSteps::VoxelSteps(double voxel_m)
+    : step_m_(std::ldexp(1.0, std::max(-30, std::ilogb(voxel_m) + 1 - 32))),
+      steps_per_voxel_(std::llround(voxel_m / step_m_)) {}
 
 VoxelMoments& VoxelMoments::operator+=(const VoxelMoments& other) {
   n_ += other.n_;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 
@@ -16,11 +15,11 @@ using OffsetSteps = std::array<std::uint32_t, 3>;
 /// A place in a frame of voxels, in whole steps from the corner of its voxel of key 0.
 using Corner = std::array<std::int64_t, 3>;
 
-/// Offsets of points from the corners of their voxels, rounded to steps of 2^-30 m; where voxels have 4 m or more, to
-/// the power of two of which at most 2^32 reach across one. The same in every frame of voxels of that size.
+/// Steps for the offsets of points from the corners of their voxels: 2^-30 m; where voxels have 4 m or more, the power
+/// of two of which at most 2^32 reach across one. The same in every frame of voxels of that size.
 class VoxelSteps {
  public:
-  VoxelSteps(const VoxelFrame& frame, double voxel_m);
+  explicit VoxelSteps(double voxel_m);
 
   double step_m() const { return step_m_; }
   /// Voxels are as many whole steps apart, whatever is left over.
@@ -28,17 +27,9 @@ class VoxelSteps {
   Corner corner(const VoxelKey& voxel) const {
     return {voxel.x * steps_per_voxel_, voxel.y * steps_per_voxel_, voxel.z * steps_per_voxel_};
   }
-  OffsetSteps offset(const Eigen::Vector3d& world, const VoxelKey& voxel) const {
-    return {steps(world.x(), base_.x() + voxel.x), steps(world.y(), base_.y() + voxel.y),
-            steps(world.z(), base_.z() + voxel.z)};
-  }
 
  private:
-  /// The corner is rounded: a point at a face may seem to lie outside, and counts as at the face.
-  std::uint32_t steps(double world, double index) const { return whole_32((world - index * voxel_m_) * steps_per_m_); }
-
-  Eigen::Vector3d base_;  ///< index of the voxel of key 0: a whole number
-  double voxel_m_, step_m_, steps_per_m_;
+  double step_m_;
   std::int64_t steps_per_voxel_;
 };
 

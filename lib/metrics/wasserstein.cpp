@@ -17,7 +17,7 @@ struct PlaceSource {
   using Moments = VoxelMoments;
 
   PlaceSource(const PhasedFrame& frame, bool with_halves)
-      : halves(with_halves), steps_of(frame.voxels(), frame.voxels().size_m()), m(frame.parts_per_axis()) {}
+      : halves(with_halves), steps_of(frame.voxels().size_m()), m(frame.parts_per_axis()) {}
 
   bool counts(const IndexedMap&, std::size_t) const { return true; }
   struct Terms {

@@ -55,6 +55,74 @@ TEST_P(MetricKernels, PlacesAreThoseOfTheFrame) {
   }
 }
 
+TEST_P(MetricKernels, OffsetsAreThoseOfThePlainOnes) {
+  PointBlocks points;
+  points.origin = {448'000.25, -5'411'000.5, 0.0};
+  points.blocks.push_back(points_on_and_off_faces());
+  points.size = kBlockSize;
+  const Box3d box{points.origin - Eigen::Vector3d(20, 20, 20), points.origin + Eigen::Vector3d(20, 20, 20)};
+  for (const double voxel_m : {0.3, 0.5, 3.9}) {
+    const PartGrid grid = part_grid(points, VoxelFrame(box, voxel_m), 1, 4);
+    GridPlaces places;
+    metric_kernels_for(SimdLevel::kPlain).grid_places(grid, points.blocks[0], places);
+    OffsetLanes found, plain;
+    level().offsets(grid, 0x1p30, points.blocks[0], places, found);
+    metric_kernels_for(SimdLevel::kPlain).offsets(grid, 0x1p30, points.blocks[0], places, plain);
+    for (std::size_t i = 0; i < kBlockSize; ++i) {
+      ASSERT_EQ((std::array{found.x[i], found.y[i], found.z[i]}), (std::array{plain.x[i], plain.y[i], plain.z[i]}));
+      const double index = grid.first[0] + places.x[i];
+      ASSERT_EQ(found.x[i], std::max(0.0, std::floor((points.world(i).x() - index * voxel_m) * 0x1p30 + 0.5)));
+    }
+  }
+}
+
+/// Three rows of voxels whose y and z are drawn, sorted, and whose distances are whole, so that sums are exact.
+struct DrawnRows {
+  explicit DrawnRows(std::mt19937& random) {
+    std::uniform_int_distribution<int> at(-9, 9);
+    for (int row = 0; row < 3; ++row) {
+      std::vector<std::array<int, 2>> row_voxels(static_cast<std::size_t>(11 + 7 * row));
+      for (auto& [row_y, row_z] : row_voxels) row_y = at(random), row_z = at(random);
+      std::ranges::sort(row_voxels);
+      for (const auto& [row_y, row_z] : row_voxels) add(row_y, row_z, at(random) + 20);
+      for (std::size_t i = 0; i < RowsOfVoxels::kAtOnce; ++i) add(std::numeric_limits<double>::infinity(), 0, 0);
+    }
+  }
+  void add(double at_y, double at_z, double at_distance_m) {
+    y.push_back(at_y);
+    z.push_back(at_z);
+    distance_m.push_back(at_distance_m);
+  }
+  RowsOfVoxels rows() const { return {y.data(), z.data(), distance_m.data()}; }
+
+  std::vector<double> y, z, distance_m;
+};
+
+TEST_P(MetricKernels, NearSumsAreThoseOfALoop) {
+  std::mt19937 random(3);
+  for (int repeat = 0; repeat < 50; ++repeat) {
+    const DrawnRows drawn(random);
+    const std::size_t second_row = 11 + RowsOfVoxels::kAtOnce, center = second_row + random() % 18;
+    // Of the first row a part of which no voxel before lies near in y, of the second all.
+    std::size_t begin = 0;
+    while (begin < 11 && drawn.y[begin] < drawn.y[center] - 4) ++begin;
+    const Stretch stretches[]{{begin, 11}, {second_row, second_row + 18}};
+    NearSums expected{};
+    for (const Stretch& stretch : stretches) {
+      for (std::size_t i = stretch.begin; i < stretch.end; ++i) {
+        if (std::abs(drawn.y[i] - drawn.y[center]) > 4 || std::abs(drawn.z[i] - drawn.z[center]) > 4) continue;
+        const double difference = drawn.distance_m[i] - drawn.distance_m[center];
+        expected.n += 1;
+        expected.sum += difference;
+        expected.sum_sq += difference * difference;
+      }
+    }
+    const NearSums found = level().near_sums(drawn.rows(), stretches, 2, center, 4.0);
+    ASSERT_GE(found.n, 1.0);
+    ASSERT_EQ((std::array{found.n, found.sum, found.sum_sq}), (std::array{expected.n, expected.sum, expected.sum_sq}));
+  }
+}
+
 /// Colors about a center, spread on some channels only, so that covariances of rank 0 to 3 occur.
 NarrowColorSums random_colors(std::mt19937& random, int rank, int n) {
   NarrowColorSums sums;

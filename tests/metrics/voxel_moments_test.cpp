@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "grid_places.hpp"
 #include "metrics/map_pairs.hpp"
 
 namespace cmap {
@@ -74,6 +75,32 @@ TEST(VoxelMoments, EqualTheSumOverPairsOfPoints) {
   }
 }
 
+TEST(VoxelMoments, AboutAFarCornerAreThoseAboutANearOne) {
+  // 2^31 voxels of 2^32 steps away: sums and products wrap.
+  const std::vector<OffsetSteps> points = random_points(1000, 5);
+  const Corner away{std::int64_t{1} << 62, -(std::int64_t{1} << 61) - 12345, 7};
+  const Gaussian near = moments_of(points).gaussian(0x1p-30);
+  VoxelMoments far = moments_of(points);
+  far.move(away);
+  expect_same_bits(far.gaussian(0x1p-30, away), near);
+  // In two parts, of which each was about its own corner.
+  VoxelMoments parts = moments_of({points.begin(), points.begin() + 300});
+  parts.move(away);
+  VoxelMoments rest = moments_of({points.begin() + 300, points.end()});
+  rest.move(away);
+  expect_same_bits((parts += rest).gaussian(0x1p-30, away), near);
+}
+
+TEST(VoxelMoments, MovedPointsAreThoseOfTheirPlaces) {
+  // (1, 0, 0) and (2, 5, 0), the second by (0, 0, 3): mean (1.5, 2.5, 1.5), half of the difference (0.5, 2.5, 1.5).
+  VoxelMoments moments = moments_of({{1, 0, 0}}), moved = moments_of({{2, 5, 0}});
+  moved.move({0, 0, 3});
+  const Gaussian found = (moments += moved).gaussian(1.0);
+  EXPECT_EQ(found.mean, Eigen::Vector3d(1.5, 2.5, 1.5));
+  const Eigen::Vector3d half(0.5, 2.5, 1.5);
+  EXPECT_EQ(found.scatter, 2.0 * half * half.transpose());
+}
+
 TEST(VoxelMoments, NeitherOrderNorPartsChangeABit) {
   std::vector<OffsetSteps> points = random_points(30'000, 2);
   const VoxelMoments whole = moments_of(points);
@@ -91,13 +118,27 @@ TEST(VoxelMoments, NeitherOrderNorPartsChangeABit) {
 
 const Box3d kBox{{-50, -50, -50}, {50, 50, 50}};
 
+/// Of one point.
+OffsetSteps offset_of(const Eigen::Vector3d& world, const VoxelFrame& frame, const VoxelKey& voxel) {
+  PointBlocks points;
+  points.origin = world;
+  GridPlaces places{};
+  places.x[0] = voxel.x;
+  places.y[0] = voxel.y;
+  places.z[0] = voxel.z;
+  OffsetLanes offsets;
+  const double steps_per_m = 1.0 / VoxelSteps(frame.size_m()).step_m();
+  metric_kernels().offsets(part_grid(points, frame, 1, 32), steps_per_m, PointBlock{}, places, offsets);
+  return {offsets.x[0], offsets.y[0], offsets.z[0]};
+}
+
 OffsetSteps steps_in_first_voxel(double x_m, double voxel_m) {
   const VoxelFrame frame(kBox, voxel_m);
-  return VoxelSteps(frame, voxel_m).offset({x_m, 0, 0}, frame.key(std::array<std::int64_t, 3>{0, 0, 0}));
+  return offset_of({x_m, 0, 0}, frame, frame.key(std::array<std::int64_t, 3>{0, 0, 0}));
 }
 
 TEST(VoxelSteps, AreAPowerOfTwoOfTheVoxel) {
-  const auto step_m = [](double voxel_m) { return VoxelSteps(VoxelFrame(kBox, voxel_m), voxel_m).step_m(); };
+  const auto step_m = [](double voxel_m) { return VoxelSteps(voxel_m).step_m(); };
   for (const double voxel_m : {0.001, 0.3, 2.0, 3.0, std::nextafter(4.0, 0.0)}) EXPECT_EQ(step_m(voxel_m), 0x1p-30);
   EXPECT_EQ(step_m(4.0), 0x1p-29);
   EXPECT_EQ(step_m(7.9), 0x1p-29);
@@ -117,14 +158,13 @@ TEST(VoxelSteps, RoundToTheNearest) {
 TEST(VoxelSteps, APointAtAFaceStaysInItsVoxel) {
   const double voxel_m = 0.1;
   const VoxelFrame frame(kBox, voxel_m);
-  const VoxelSteps steps(frame, voxel_m);
-  const auto most = static_cast<std::uint32_t>(std::ceil(voxel_m / steps.step_m()));
+  const auto most = static_cast<std::uint32_t>(std::ceil(voxel_m / VoxelSteps(voxel_m).step_m()));
   int n_below = 0;
   for (int i = -400; i < 400; ++i) {
     const double corner_m = i * voxel_m;
     for (const double x_m : {std::nextafter(corner_m, -100.0), corner_m, std::nextafter(corner_m, 100.0)}) {
       const VoxelKey key = frame.key(Eigen::Vector3d(x_m, 0, 0));
-      EXPECT_LE(steps.offset({x_m, 0, 0}, key)[0], most) << x_m;
+      EXPECT_LE(offset_of({x_m, 0, 0}, frame, key)[0], most) << x_m;
       n_below += x_m < static_cast<double>(frame.index(key)[0]) * voxel_m ? 1 : 0;
     }
   }
@@ -134,11 +174,10 @@ TEST(VoxelSteps, APointAtAFaceStaysInItsVoxel) {
 TEST(VoxelSteps, AreTheSameInEveryFrame) {
   const double voxel_m = 0.3;
   const VoxelFrame whole(kBox, voxel_m), tile({{20, -7, 3}, {30, 1, 40}}, voxel_m);
-  const VoxelSteps in_whole(whole, voxel_m), in_tile(tile, voxel_m);
   std::mt19937_64 random(4);
   for (int i = 0; i < 1000; ++i) {
     const Eigen::Vector3d world = Eigen::Vector3d(20, -7, 3) + test::uniform_point(random, 8.0f).cast<double>();
-    EXPECT_EQ(in_tile.offset(world, tile.key(world)), in_whole.offset(world, whole.key(world)));
+    EXPECT_EQ(offset_of(world, tile, tile.key(world)), offset_of(world, whole, whole.key(world)));
   }
 }
 

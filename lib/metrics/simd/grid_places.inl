@@ -43,7 +43,7 @@ void grid_places(const PartGrid& grid, const PointBlock& points, GridPlaces& pla
   }
 }
 
-/// The formulas are those of VoxelSteps.
+/// Whole numbers of 32 bits as the last bits of doubles.
 void axis_offsets(const PartGrid& grid, std::size_t axis, double steps_per_m, const float* points,
                   const std::int32_t* keys, std::uint32_t* offsets) {
   constexpr double kMost = 0x1p32 - 1.0, kWhole = 0x1p52;  // whose last bit is a whole one

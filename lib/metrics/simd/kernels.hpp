@@ -28,8 +28,8 @@ struct OffsetLanes {
   alignas(64) std::uint32_t x[kBlockSize], y[kBlockSize], z[kBlockSize];
 };
 
-/// Of the iteration for Wasserstein distances (wasserstein.cpp), which begins with up to 1.8 times of what it looks for:
-/// whatever that is, what is off is below 1.9 %, 0.12 %, then with Newton's method 3e-8 and 1e-17 of it.
+/// Of the iteration for Wasserstein distances (wasserstein.cpp), which begins with up to 1.8 times of what it looks
+/// for: whatever that is, what is off is below 1.9 %, 0.12 %, then with Newton's method 3e-8 and 1e-17 of it.
 inline constexpr int kFixedPointSteps = 2, kNewtonSteps = 2;
 
 /// The 8-bit colors of both maps in some voxels, side by side. A word is below 2^32 and a voxel of at most 2^16 points.
@@ -60,7 +60,8 @@ struct NearSums {
 /// One set of kernels for each instruction set, all with bitwise equal results, which no lane's neighbors change.
 struct MetricKernels {
   void (*grid_places)(const PartGrid& grid, const PointBlock& points, GridPlaces& places);
-  /// Rounded; a point outside of its voxel, as corners are rounded, too, counts as at the face.
+  /// Rounded: (world - voxel_m * index) * steps_per_m + 1/2, floored. A point that seems to lie outside of its voxel,
+  /// as corners are rounded, too, counts as at the face.
   void (*offsets)(const PartGrid& grid, double steps_per_m, const PointBlock& points, const GridPlaces& places,
                   OffsetLanes& offsets);
   /// The 2-Wasserstein distances of the Gaussians of such voxels, of at least two points each, in levels of 8 bit.
