@@ -28,12 +28,16 @@ void sum_windows(std::span<const PlacedSums<Sums>> parts, std::int32_t stride, E
   };
   for (std::size_t k = 0; k < kParts; ++k) find_window(k);
   for (std::int32_t window; (window = std::ranges::min(window_of)) != kNone;) {
-    Sums sums{};
-    for (std::size_t k = 0; k < kParts; ++k) {
-      if (window_of[k] != window) continue;
-      sums += parts[next[k]++].sums;
-      find_window(k);
-    }
+    std::size_t k = 0;
+    const auto next_part = [&]() -> const Sums& {
+      while (window_of[k] != window) ++k;
+      const Sums& part = parts[next[k]++].sums;
+      find_window(k++);
+      return part;
+    };
+    const auto n_parts = std::ranges::count(window_of, window);
+    Sums sums = next_part();
+    for (std::ptrdiff_t i = 1; i < n_parts; ++i) sums += next_part();
     emit(window, sums);
   }
 }
