@@ -113,9 +113,8 @@ double trace_of_root(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
   for (int step = 0; step < kFixedPointSteps; ++step) r = std::sqrt(e1 + 2.0 * std::sqrt(e2 + 2.0 * root_e3 * r));
   for (int step = 0; step < kNewtonSteps; ++step) {
     const double q = std::sqrt(e2 + 2.0 * root_e3 * r);
-    const double next = std::sqrt(e1 + 2.0 * q);
-    const double slope = q > 0.0 ? root_e3 / (q * next) : 0.0;  // at most 1/9
-    r += (next - r) / (1.0 - slope);
+    const double next = std::sqrt(e1 + 2.0 * q), product = q * next;  // at least 9 root_e3
+    if (product > 0.0) r += (next - r) * product / (product - root_e3);
   }
   return r;
 }

@@ -184,6 +184,22 @@ TEST_P(MetricKernels, NoLaneChangesItsNeighbors) {
   EXPECT_EQ(together[0], alone[0]);
 }
 
+TEST_P(MetricKernels, OneColorIsAtNoDistanceFromItself) {
+  ColorPairLanes pairs{};
+  const auto put = [](std::uint32_t(&words)[ColorPairLanes::kWords][ColorPairLanes::kLanes], std::size_t lane, int n) {
+    NarrowColorSums sums;
+    for (int i = 0; i < n; ++i) sums.add({255, 31, 7});
+    for (std::size_t word = 0; word < ColorPairLanes::kWords; ++word) words[word][lane] = sums.words()[word];
+  };
+  for (std::size_t i = 0; i < ColorPairLanes::kLanes; ++i) {
+    put(pairs.reference, i, 3 + static_cast<int>(i));
+    put(pairs.estimate, i, 49 * static_cast<int>(i + 1));
+  }
+  std::array<double, ColorPairLanes::kLanes> found{};
+  level().color_distances(pairs, found.data());
+  for (const double distance : found) EXPECT_EQ(distance, 0.0);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, MetricKernels, testing::ValuesIn(test::simd_levels_here()),
                          [](const auto& level) { return std::string(simd_level_name(level.param)); });
 

@@ -42,9 +42,8 @@ struct Symmetric {
           (n * words[7][i] - g * g) * by, (n * words[8][i] - g * b) * by, (n * words[9][i] - b * b) * by};
 }
 
-/// The sum r of the roots of three eigenvalues, from their sums of products.
+/// The sum r of the roots of three eigenvalues, from their sums of products; r is sqrt(3 e1) first.
 void sums_of_roots(const Lanes& e1, const Lanes& e2, const Lanes& root_e3, Lanes& r) {
-  for (std::size_t i = 0; i < kLanes; ++i) r[i] = square_root(3.0 * e1[i]);
   for (int step = 0; step < kFixedPointSteps; ++step) {
     for (std::size_t i = 0; i < kLanes; ++i) {
       r[i] = square_root(e1[i] + 2.0 * square_root(e2[i] + 2.0 * root_e3[i] * r[i]));
@@ -53,9 +52,8 @@ void sums_of_roots(const Lanes& e1, const Lanes& e2, const Lanes& root_e3, Lanes
   for (int step = 0; step < kNewtonSteps; ++step) {
     for (std::size_t i = 0; i < kLanes; ++i) {
       const double q = square_root(e2[i] + 2.0 * root_e3[i] * r[i]);
-      const double next = square_root(e1[i] + 2.0 * q);
-      const double slope = q > 0.0 ? root_e3[i] / largest(q * next, 1e-300) : 0.0;  // at most 1/9
-      r[i] += (next - r[i]) / (1.0 - slope);
+      const double next = square_root(e1[i] + 2.0 * q), product = q * next;  // at least 9 root_e3
+      r[i] += (next - r[i]) * product / largest(product - root_e3[i], 1e-300);
     }
   }
 }
@@ -67,17 +65,19 @@ void color_distances(const ColorPairLanes& pairs, double* distances) {
     traces[i] = a.trace() + b.trace();
     e1[i] = largest(0.0, a.dot(b));
     e2[i] = largest(0.0, a.cofactors().dot(b.cofactors()));
-    const double most = square_root(3.0 * e1[i]);
+    roots[i] = square_root(3.0 * e1[i]);
     const double product = square_root(a.determinant() * b.determinant());
     // 3 e1 e3 <= e2^2, which noise may not break.
-    root_e3[i] = smallest(product, e2[i] / largest(most, 1e-300));
+    root_e3[i] = smallest(product, e2[i] / largest(roots[i], 1e-300));
   }
   sums_of_roots(e1, e2, root_e3, roots);
   for (std::size_t i = 0; i < kLanes; ++i) {
     double sq = traces[i] - 2.0 * roots[i];
+    // Exact products: equal means are 0 apart.
+    const double n_reference = pairs.reference[0][i], n_estimate = pairs.estimate[0][i];
+    const double by = 1.0 / (n_reference * n_estimate);
     for (std::size_t channel = 1; channel <= 3; ++channel) {
-      const double d = pairs.reference[channel][i] / double(pairs.reference[0][i]) -
-                       pairs.estimate[channel][i] / double(pairs.estimate[0][i]);
+      const double d = (pairs.reference[channel][i] * n_estimate - pairs.estimate[channel][i] * n_reference) * by;
       sq += d * d;
     }
     distances[i] = sq < 1e-12 * traces[i] || sq <= 0.0 ? 0.0 : square_root(sq);
