@@ -46,7 +46,7 @@ struct Arguments {
   std::string source, target, initial, times, time_offset, output, json, cloud, figure;
   cmap::AlignMethod method{AlignKind::kRegistration, &cmap::registration_method("gicp")};
   cmap::TrajectoryOptions trajectories;
-  double voxel_m = 0.0, max_distance_m = 0.0, tau_m = 0.0;
+  double voxel_m = 0.0, max_distance_m = 0.0, finest_m = 0.0, tau_m = 0.0;
   bool scale = false, keep_noise = false, allow_unconverged = false;
   bool recognized = false;  ///< as trajectories, by what the files hold
   std::vector<std::uint8_t> classes;
@@ -81,6 +81,10 @@ void add_method_options(cmap::CommandLine& line, Arguments& a) {
   line.add("--voxel", a.voxel_m, "M", "the source is thinned to this, the target to half [size of DST / 400]")
       .between(kLeast, kMost);
   line.add("--max-distance", a.max_distance_m, "M", "farther pairs are no matches [10 voxels]").between(kLeast, kMost);
+  line.add("--finest", a.finest_m, "M",
+           "smallest distance to be scored afterwards: without --voxel, levels go on to it, as far as points allow "
+           "[none]")
+      .between(kLeast, kMost);
   line.add_flag("--scale", a.scale, "estimate the scale too, where the method leaves the choice");
   line.add("--tau", a.tau_m, "M", "threshold of tanksandtemples").between(kLeast, kMost);
   line.add_choice("--fit", a.trajectories.fit, cmap::trajectory_fit_names(), "NAME",
@@ -141,9 +145,9 @@ bool is_used(std::string_view option, const cmap::AlignMethod& method) {
 
 /// Options that the method would ignore are refused: they do not do what their giver thinks.
 void refuse_unused(const cmap::CommandLine& line, const cmap::AlignMethod& method) {
-  for (const char* option :
-       {"--initial", "--voxel", "--max-distance", "--scale", "--tau", "--fit", "--pairing", "--max-difference",
-        "--time-offset", "--max-gap", "--times", "--output-cloud", "--figure", "--keep-noise", "--classes"}) {
+  for (const char* option : {"--initial", "--voxel", "--max-distance", "--finest", "--scale", "--tau", "--fit",
+                             "--pairing", "--max-difference", "--time-offset", "--max-gap", "--times", "--output-cloud",
+                             "--figure", "--keep-noise", "--classes"}) {
     if (!line.has(option) || is_used(option, method)) continue;
     throw cmap::UsageError(
         fmt::format("{} has no meaning for --method {}", option, name_of(method, cmap::align_method_names())));
@@ -219,6 +223,7 @@ Result align_maps(const Arguments& a) {
   options.T_initial = cmap::transform_or_identity(a.initial, warnings);
   if (a.voxel_m > 0.0) options.voxel_m = a.voxel_m;
   if (a.max_distance_m > 0.0) options.max_distance_m = a.max_distance_m;
+  if (a.finest_m > 0.0) options.finest_m = a.finest_m;
   options.with_scale = a.scale;
   auto [source, target] = cmap::read_both(a.source, a.target, {.keep_noise = a.keep_noise, .classes = a.classes});
   Result result;

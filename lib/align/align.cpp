@@ -18,7 +18,7 @@
 namespace cmap {
 namespace {
 
-constexpr double kVoxelsPerSize = 400.0;
+constexpr double kVoxelsPerSize = 400.0, kSpacingsPerVoxel = 2.0;
 
 /// From the 0.5 to the 99.5 % quantile of an axis: strays do not count.
 double extent_m(const PointCloud& cloud, int axis) {
@@ -46,8 +46,8 @@ double median_spacing_m(const PointCloud& cloud) {
 }
 
 /// Thinning leaves an error of some share of the voxel. Where both clouds hold the same points, as a copy does, the
-/// points themselves leave none: they are tried, and taken where they come to lie on each other.
-void settle_on_common_points(const PointCloud& source, const PointCloud& target, bool with_scale, Alignment& found) {
+/// points themselves leave none: they are tried, and taken where they come to lie on each other. Returns whether.
+bool settle_on_common_points(const PointCloud& source, const PointCloud& target, bool with_scale, Alignment& found) {
   constexpr std::size_t kSample = 100'000, kFew = 2'000;
   constexpr double kSamePoint = 0.02;  // of the voxel; samples of a surface taken twice are farther apart
   IcpOptions options;
@@ -58,15 +58,55 @@ void settle_on_common_points(const PointCloud& source, const PointCloud& target,
     return settled.rmse_m < kSamePoint * found.voxel_m && settled.overlap >= found.overlap - kSamePoint;
   };
   try {
-    if (!is_copy(icp(sampled(source, kFew), target, found.T_dst_src, options))) return;
+    if (!is_copy(icp(sampled(source, kFew), target, found.T_dst_src, options))) return false;
     const Alignment settled = icp(sampled(source, kSample), target, found.T_dst_src, options);
-    if (!is_copy(settled)) return;
+    if (!is_copy(settled)) return false;
     found.T_dst_src = settled.T_dst_src;
     found.scale = settled.scale;
     found.rmse_m = settled.rmse_m;
+    return true;
   } catch (const UnsupportedError&) {
-    // Too few points so near to each other: no copy.
+    return false;  // too few points so near to each other: no copy
   }
+}
+
+double farthest_move_m(const PointCloud& source, const Eigen::Matrix4d& from, const Eigen::Matrix4d& to) {
+  double sq_dist = 0.0;
+  for (const Eigen::Vector3d& corner : corners(bounds(source))) {
+    sq_dist = std::max(sq_dist, ((to - from) * corner.homogeneous()).squaredNorm());
+  }
+  return std::sqrt(sq_dist);
+}
+
+/// Goes on from what was found to the finest distance that is to be measured. A step that leads away from what was
+/// judged is not taken.
+void sharpen(const PointCloud& source, const PointCloud& target, const RegistrationMethod& method,
+             const AlignOptions& options, Alignment& found) {
+  constexpr std::size_t kMostPoints = 100'000;
+  constexpr double kWorthIt = 0.75;  // of the voxel so far
+  const double voxel_m = std::max(*options.finest_m, kSpacingsPerVoxel * median_spacing_m(target));
+  if (voxel_m > kWorthIt * found.voxel_m) return;
+  const bool is_own = method.needs_initial && method.scale == ScaleRule::kOnRequest;
+  const RegistrationMethod& finer = is_own ? method : registration_method("gicp");
+  try {
+    AlignOptions how;
+    how.T_initial = found.T_dst_src;
+    how.with_scale = options.with_scale || method.scale == ScaleRule::kAlways;
+    how.most_points = kMostPoints;
+    Alignment sharper = finer.run(source, target, how, voxel_m);
+    if (farthest_move_m(source, found.T_dst_src, sharper.T_dst_src) > found.voxel_m) return;
+    sharper.method = found.method;
+    sharper.judgment = found.judgment;
+    sharper.iterations += found.iterations;
+    found = std::move(sharper);
+  } catch (const UnsupportedError&) {
+    // Too little lies so near to each other: what was found stands.
+  }
+}
+
+void require_positive(const char* name, double value) {
+  if (!(value > 0.0) || !std::isfinite(value))
+    throw UsageError(fmt::format("{} is {:g}: above 0 is needed", name, value));
 }
 
 nlohmann::ordered_json directions_json(const std::vector<WeakDirection>& directions) {
@@ -109,7 +149,7 @@ double default_align_voxel_m(const PointCloud& target) {
   if (target.positions.empty()) throw std::invalid_argument("a registration needs points");
   const double size_m = Eigen::Vector3d(extent_m(target, 0), extent_m(target, 1), extent_m(target, 2)).norm();
   if (!(size_m > 0.0)) throw UnsupportedError("all points of the target coincide");
-  return std::max(size_m / kVoxelsPerSize, 2.0 * median_spacing_m(target));
+  return std::max(size_m / kVoxelsPerSize, kSpacingsPerVoxel * median_spacing_m(target));
 }
 
 Alignment align(const PointCloud& source, const PointCloud& target, const RegistrationMethod& method,
@@ -119,14 +159,13 @@ Alignment align(const PointCloud& source, const PointCloud& target, const Regist
     throw std::invalid_argument("a registration needs points");
   }
   const double voxel_m = options.voxel_m.value_or(default_align_voxel_m(target));
-  if (!(voxel_m > 0.0) || !std::isfinite(voxel_m)) {
-    throw UsageError(fmt::format("voxel_m is {:g}: above 0 is needed", voxel_m));
-  }
+  require_positive("voxel_m", voxel_m);
+  if (options.finest_m) require_positive("finest_m", *options.finest_m);
   Alignment found = method.run(source, target, options, voxel_m);
-  if (found.voxel_m > 0.0) {
-    settle_on_common_points(source, target, options.with_scale || method.scale == ScaleRule::kAlways, found);
-  }
+  const bool with_scale = options.with_scale || method.scale == ScaleRule::kAlways;
+  const bool is_exact = found.voxel_m > 0.0 && settle_on_common_points(source, target, with_scale, found);
   if (found.judgment.verdict == Verdict::kNotJudged) found.judgment = judge_alignment(source, target, found);
+  if (options.finest_m && !options.voxel_m && !is_exact) sharpen(source, target, method, options, found);
   return found;
 }
 

@@ -41,6 +41,7 @@ Alignment align_estimate(const PointCloud& reference, const PointCloud& estimate
   how.voxel_m = options.align_voxel_m;
   how.max_distance_m = options.align_distance_m;
   how.with_scale = options.align_scale;
+  how.finest_m = *std::ranges::min_element(options.thresholds_m);
   return align(estimate, reference, *options.align.registration, how);
 }
 

@@ -49,6 +49,33 @@ TEST(Align, TheDefaultVoxelIsBlindToStraysAndFollowsTheScale) {
   EXPECT_NEAR(default_align_voxel_m(transformed(cloud, doubled)), 2.0 * voxel_m, 0.02 * voxel_m);
 }
 
+TEST(Align, LevelsGoOnToWhatIsToBeMeasured) {
+  // Points 2 cm apart in a town of 40 m, whose own voxel is 14 cm: both maps are thinned on lattices of their own.
+  const PointCloud target = test::town(20, 400000, 7), source = test::town(20, 400000, 8);
+  const Similarity T{1.0, rotation_from({0.002, -0.003, 0.01}), {0.2, -0.3, 0.1}};
+  const PointCloud moved = transformed(source, T.inverse().matrix());
+  const auto error_m = [&](const Alignment& found) {
+    return test::displacement_m(similarity_from(found.T_dst_src), T, moved);
+  };
+  for (const char* method : {"gicp", "plane", "global"}) {
+    AlignOptions options;
+    const Alignment coarse = align(moved, target, registration_method(method), options);
+    options.finest_m = 0.01;
+    const Alignment fine = align(moved, target, registration_method(method), options);
+    EXPECT_LT(fine.voxel_m, 0.5 * coarse.voxel_m);
+    EXPECT_GT(fine.voxel_m, 0.01) << "not below the points' spacing";
+    EXPECT_LT(error_m(fine), 0.1 * *options.finest_m) << method;
+    EXPECT_EQ(fine.method, method);
+    EXPECT_EQ(fine.judgment.verdict, Verdict::kDetermined);
+    EXPECT_EQ(fine.judgment.score, coarse.judgment.score);
+    if (method == std::string("gicp")) {
+      EXPECT_LT(error_m(fine), 0.5 * error_m(coarse));
+    }
+    options.finest_m = 1.0;
+    EXPECT_EQ(align(moved, target, registration_method(method), options).T_dst_src, coarse.T_dst_src);
+  }
+}
+
 TEST(Align, SaysWhatIsWrong) {
   const PointCloud cloud = test::town(20, 2000, 6);
   EXPECT_THROW(registration_method("ICP"), UsageError);
@@ -56,6 +83,10 @@ TEST(Align, SaysWhatIsWrong) {
   AlignOptions options;
   options.voxel_m = -1.0;
   EXPECT_THROW(align(cloud, cloud, registration_method("icp"), options), UsageError);
+  options.voxel_m.reset();
+  options.finest_m = 0.0;
+  EXPECT_THROW(align(cloud, cloud, registration_method("icp"), options), UsageError);
+  options.finest_m.reset();
   PointCloud far = cloud;
   far.origin.z() += 1000.0;
   for (const RegistrationMethod* method : registration_methods()) {

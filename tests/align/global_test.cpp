@@ -45,6 +45,45 @@ TEST(Global, FindsPoseAndScaleWithPartialOverlap) {
   EXPECT_LT(test::displacement_m(similarity_from(found.T_dst_src), A.inverse(), moved), 0.3);
 }
 
+/// Millimeters, feet, and a network's unit.
+TEST(Global, FindsScalesFromAThousandthToAThousand) {
+  const PointCloud target = test::town(45, 30000, 4), source = test::town(45, 30000, 5);
+  std::mt19937_64 random(16);
+  AlignOptions options;
+  options.with_scale = true;
+  for (const double scale : {0.001001, 0.3048, 37.0, 999.0}) {
+    Similarity A = test::random_similarity(random, 1.0 / scale, 1.0 / scale, 100.0);
+    const PointCloud moved = transformed(source, A.matrix());
+    const Alignment found = align(moved, target, registration_method("global"), options);
+    EXPECT_EQ(found.judgment.verdict, Verdict::kDetermined) << scale << ": " << found.judgment.reason;
+    EXPECT_NEAR(found.scale / scale, 1.0, 2e-3);
+    EXPECT_LT(test::displacement_m(similarity_from(found.T_dst_src), A.inverse(), moved), 0.3);
+  }
+}
+
+TEST(Global, NamesTheScalesThatItSearched) {
+  const PointCloud target = test::town(45, 30000, 4);
+  AlignOptions options;
+  options.with_scale = true;
+  const auto scaled = [&](double scale) {
+    return transformed(target, Similarity{scale, Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()}.matrix());
+  };
+  EXPECT_THAT(
+      test::refusal_of<UnsupportedError>([&] { align(scaled(1e-4), target, registration_method("global"), options); }),
+      HasSubstr("scales from 0.001 to 1000 are searched"));
+  // Nothing in common: a cloud of noise, of the town's size.
+  PointCloud noise = test::uniform_cloud(20000, 17);
+  const Eigen::Vector3d size = bounds(target).max - bounds(target).min;
+  for (Eigen::Vector3f& p : noise.positions) p = p.cwiseProduct(size.cast<float>() / 2.0f);
+  std::string reason;
+  try {
+    reason = align(noise, target, registration_method("global"), options).judgment.reason;
+  } catch (const UnsupportedError& error) {
+    reason = error.what();
+  }
+  EXPECT_THAT(reason, HasSubstr("were searched"));
+}
+
 /// One point in a hundred of the estimate is a stray, up to 150 m above a town of 36 m.
 TEST(Global, StraysDoNotHideATown) {
   const PointCloud source = test::sample_town("estimate.ply"), target = test::sample_town("reference.ply");

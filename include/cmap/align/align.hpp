@@ -22,6 +22,11 @@ struct AlignOptions {
   /// is wrong by divided by 4 (levels begin 4 times as coarse), for sim3 (where it is the first gate) that itself.
   std::optional<double> max_distance_m;
   bool with_scale = false;  ///< estimate the scale too, where the method leaves the choice
+  /// The smallest distance that is to be measured afterwards. Where no voxel is given, levels go on until it, but no
+  /// finer than twice the target's median spacing; the pose that was judged moves by less than the voxel it was judged
+  /// at.
+  std::optional<double> finest_m;
+  std::size_t most_points = 0;  ///< of the thinned source that take part in a level, spread evenly; 0: all
 };
 
 /// Whether a method estimates the scale.

@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "cmap/align/icp.hpp"
 #include "cmap/core/error.hpp"
@@ -62,31 +63,33 @@ Attempt attempt_at(double scale, const PointCloud& source, const PointCloud& tar
   return attempt;
 }
 
-/// Scales to try, the most plausible first: those that give the maps one size, and others around it in steps that the
-/// columns forgive.
-std::vector<double> scales_to_try(const PointCloud& source, const PointCloud& target) {
+/// Scales to try, the most plausible first: where it is asked for, the one that gives the maps one size, and others
+/// around it in steps that the columns forgive.
+std::vector<double> scales_to_try(const PointCloud& source, const PointCloud& target, bool with_scale) {
+  if (!with_scale) return {1.0};
   constexpr double kStep = 1.04;
   constexpr int kSteps = 16;  // a factor of 1.9 each way
   const double same_size = size_of(target) / size_of(source);
-  if (!(same_size >= kLeastScale && same_size <= kMostScale)) {
-    throw UnsupportedError(
-        fmt::format("the maps' sizes differ by a factor of {:.3g}: scales from {:g} to {:g} are searched", same_size,
-                    kLeastScale, kMostScale));
-  }
   std::vector<double> scales{same_size};
   for (int step = 1; step <= kSteps; ++step) {
     scales.push_back(same_size * std::pow(kStep, step));
     scales.push_back(same_size * std::pow(kStep, -step));
   }
+  std::erase_if(scales, [](double scale) { return scale < kLeastScale / kStep || scale > kMostScale * kStep; });
+  if (scales.empty()) {
+    throw UnsupportedError(
+        fmt::format("the maps' sizes differ by a factor of {:.3g}: scales from {:g} to {:g} are searched", same_size,
+                    kLeastScale, kMostScale));
+  }
   return scales;
 }
 
 /// The best attempt of all scales; one that convinces ends the search.
-Attempt best_attempt(const PointCloud& source, const PointCloud& target, const GlobalOptions& options) {
+Attempt best_attempt(const PointCloud& source, const PointCloud& target, std::span<const double> scales,
+                     const GlobalOptions& options) {
   constexpr double kConvincing = 0.35, kEnough = 50.0;  // a scale that is 2 % off leaves this much
-  if (!options.with_scale) return attempt_at(1.0, source, target, options);
   Attempt best;
-  for (const double scale : scales_to_try(source, target)) {
+  for (const double scale : scales) {
     Attempt attempt = attempt_at(scale, source, target, options);
     if (attempt.evidence() > best.evidence()) best = std::move(attempt);
     if (best.finalists && best.finalists->best.worth.score > kConvincing &&
@@ -95,6 +98,13 @@ Attempt best_attempt(const PointCloud& source, const PointCloud& target, const G
     }
   }
   return best;
+}
+
+/// What was searched, behind what was not found.
+std::string searched(std::span<const double> scales) {
+  if (scales.size() < 2) return "";
+  const auto [least, most] = std::ranges::minmax(scales);
+  return fmt::format("; scales from {:.3g} to {:.3g} were searched", least, most);
 }
 
 IcpOptions refinement(double voxel_m, double fine_voxel_m, bool with_scale) {
@@ -110,14 +120,9 @@ IcpOptions refinement(double voxel_m, double fine_voxel_m, bool with_scale) {
   return options;
 }
 
-}  // namespace
-
-Alignment global_registration(const PointCloud& source, const PointCloud& target, const GlobalOptions& options) {
-  require_points(source, "source");
-  require_points(target, "target");
-  if (options.voxel_m && !(*options.voxel_m > 0.0)) throw UsageError("voxel_m must be above 0");
-  if (options.fine_voxel_m && !(*options.fine_voxel_m > 0.0)) throw UsageError("fine_voxel_m must be above 0");
-  Attempt attempt = best_attempt(source, target, options);
+Alignment registered(const PointCloud& source, const PointCloud& target, std::span<const double> scales,
+                     const GlobalOptions& options) {
+  Attempt attempt = best_attempt(source, target, scales, options);
   if (!attempt.finalists) {
     throw UnsupportedError("no pose of the source meets the target: the clouds have no shape to match");
   }
@@ -129,12 +134,28 @@ Alignment global_registration(const PointCloud& source, const PointCloud& target
   result.method = "global";
   if (options.with_scale) {
     result.judgment = judge_alignment(source, target, result);
+    if (!is_trusted(result.judgment.verdict)) result.judgment.reason += searched(scales);
   } else {
     const Similarity local = local_transform(similarity_from(result.T_dst_src), source.origin, target.origin);
     result.judgment = judgment_of(*attempt.search, local, *attempt.finalists, source.origin, target.origin);
     tell_weak(result, result.judgment);
   }
   return result;
+}
+
+}  // namespace
+
+Alignment global_registration(const PointCloud& source, const PointCloud& target, const GlobalOptions& options) {
+  require_points(source, "source");
+  require_points(target, "target");
+  if (options.voxel_m && !(*options.voxel_m > 0.0)) throw UsageError("voxel_m must be above 0");
+  if (options.fine_voxel_m && !(*options.fine_voxel_m > 0.0)) throw UsageError("fine_voxel_m must be above 0");
+  const std::vector<double> scales = scales_to_try(source, target, options.with_scale);
+  try {
+    return registered(source, target, scales, options);
+  } catch (const UnsupportedError& error) {
+    throw UnsupportedError(error.what() + searched(scales));
+  }
 }
 
 }  // namespace cmap

@@ -11,6 +11,7 @@ inline IcpOptions icp_options(const AlignOptions& options, double voxel_m) {
   IcpOptions how;
   how.with_scale = options.with_scale;
   how.levels = coarse_to_fine(voxel_m, options.max_distance_m.value_or(kGateVoxels * voxel_m), 100);
+  for (IcpLevel& level : how.levels) level.most_points = options.most_points;
   return how;
 }
 
