@@ -1,3 +1,5 @@
+#include <nlohmann/json.hpp>
+
 #include "align/align_testing.hpp"
 #include "align/towns.hpp"
 #include "cmap/align/align.hpp"
@@ -95,13 +97,16 @@ TEST(Verdict, ACorridorIsNotTrusted) {
   expect_right_or_honest(transformed(source, moved.matrix()), target, moved.inverse(), 0.5);
 }
 
+/// x, y or z the other way round.
 TEST(Verdict, AMirrorImageIsNamed) {
-  const PointCloud target = window(0, 0, 45, 9);
-  PointCloud source = window(0, 0, 45, 10);
-  for (Eigen::Vector3f& p : source.positions) p.y() = -p.y();
-  for (const char* method : {"gicp", "global"}) {
-    const Alignment found = align(source, target, registration_method(method));
-    EXPECT_EQ(found.judgment.verdict, Verdict::kMirrored) << method << ": " << found.judgment.reason;
+  const PointCloud target = window(0, 0, 45, 9), sample = window(0, 0, 45, 10);
+  for (int axis = 0; axis < 3; ++axis) {
+    PointCloud source = sample;
+    for (Eigen::Vector3f& p : source.positions) p[axis] = -p[axis];
+    for (const char* method : {"gicp", "global"}) {
+      const Alignment found = align(source, target, registration_method(method));
+      EXPECT_EQ(found.judgment.verdict, Verdict::kMirrored) << method << axis << ": " << found.judgment.reason;
+    }
   }
 }
 
@@ -115,8 +120,8 @@ TEST(Verdict, AWrongStartIsRightOrNotTrusted) {
 }
 
 TEST(Verdict, AHundredTimesDenserAndRepeatedPoints) {
-  const PointCloud target = window(0, 0, 40, 13, 400'000);
-  PointCloud sparse = window(8, 4, 40, 14, 30'000), repeated = window(8, 4, 40, 15, 60'000);
+  const PointCloud target = window(0, 0, 40, 13, 1'500'000);
+  PointCloud sparse = window(8, 4, 40, 14, 15'000), repeated = window(8, 4, 40, 15, 60'000);
   const std::size_t n = repeated.size();
   for (std::size_t i = 0; i < 2 * n; ++i) repeated.positions.push_back(repeated.positions[i % n]);
   const Similarity A = about_z(180, {-30, 12, 1});
@@ -160,6 +165,18 @@ TEST(Verdict, MovingObjectsDoNotDecide) {
   }
   const Similarity A = about_z(140, {5, -60, 0});
   expect_right_or_honest(transformed(source, A.matrix()), target, A.inverse(), 0.5);
+}
+
+TEST(Verdict, TheSameForAnyNumberOfThreads) {
+  const PointCloud target = window(0, 0, 40, 25),
+                   source = transformed(window(12, 6, 40, 26), about_z(50, {3, 4, 1}).matrix());
+  const auto all_of = [&](const char* method, int threads) {
+    AlignOptions options;
+    options.T_initial = about_z(-50, {-5, 0, -1}).matrix();
+    options.finest_m = 0.1;
+    return alignment_json(align(source, target, registration_method(method), options, {.threads = threads})).dump();
+  };
+  for (const char* method : {"gicp", "global"}) EXPECT_EQ(all_of(method, 1), all_of(method, 3)) << method;
 }
 
 TEST(Verdict, RigidWhateverTheDigitsOfTheStart) {
