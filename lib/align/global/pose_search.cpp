@@ -168,6 +168,16 @@ void PoseSearch::stand(const Eigen::Matrix3d& upright) {
 
 void PoseSearch::stand_as(const Similarity& local) { stand(target_stance_->columns.upright * local.rotation); }
 
+void PoseSearch::stand_like_target() {
+  const auto side = [](const PointCloud& thinned, const Eigen::Matrix3d& upright) {
+    const Eigen::Vector3d up = upright.row(2);
+    return up.dot(with_longer_tail(thinned, up)) > 0.0;
+  };
+  const Eigen::Matrix3d& upright = source_uprights_.front();
+  const bool is_like = side(thinned_source_, upright) == side(thinned_target_, target_stance_->columns.upright);
+  stand(is_like ? upright : Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal() * upright);
+}
+
 std::vector<JudgedPose> PoseSearch::search(bool mirrored) {
   const RecutColumns both[] = {{source_stance_->columns, source_stance_->recut},
                                {target_stance_->columns, target_stance_->recut}};

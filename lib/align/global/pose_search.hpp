@@ -26,6 +26,8 @@ class PoseSearch {
   void stand(std::size_t stance) { stand(source_uprights_[stance]); }
   /// As a pose would have it, which keeps the target's vertical.
   void stand_as(const Similarity& local);
+  /// As it most plausibly does, or on its head: so that what reaches out of the map does so to the target's side.
+  void stand_like_target();
 
   /// The best poses by columns, refined, the best first; distinct. `mirrored`: of the source's mirror image.
   std::vector<JudgedPose> search(bool mirrored = false);

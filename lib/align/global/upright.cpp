@@ -24,7 +24,8 @@ std::vector<Eigen::Vector3f> some_normals(const PointCloud& thinned) {
   return normals;
 }
 
-/// The side of the longer tail: houses and trees stand on the ground.
+}  // namespace
+
 Eigen::Vector3d with_longer_tail(const PointCloud& thinned, const Eigen::Vector3d& axis) {
   double mean = 0.0, third_moment = 0.0;
   for (const Eigen::Vector3f& p : thinned.positions) mean += axis.dot(p.cast<double>());
@@ -32,8 +33,6 @@ Eigen::Vector3d with_longer_tail(const PointCloud& thinned, const Eigen::Vector3
   for (const Eigen::Vector3f& p : thinned.positions) third_moment += std::pow(axis.dot(p.cast<double>()) - mean, 3);
   return third_moment < 0.0 ? (-axis).eval() : axis;
 }
-
-}  // namespace
 
 Ups ups_of(const PointCloud& thinned) {
   const std::vector<MainAxis> axes = main_axes(some_normals(thinned));

@@ -13,6 +13,9 @@ struct Ups {
   std::vector<Eigen::Vector3d> all;  ///< the most plausible first
 };
 
+/// An axis, to the side of the longer tail: houses and trees stand on the ground.
+Eigen::Vector3d with_longer_tail(const PointCloud& thinned, const Eigen::Vector3d& axis);
+
 /// From the directions that the surfaces of a thinned map face, as it lies.
 Ups ups_of(const PointCloud& thinned);
 

@@ -28,23 +28,14 @@ void sort_by_evidence(std::vector<JudgedPose>& poses) {
                    [](const JudgedPose& a, const JudgedPose& b) { return a.worth.evidence > b.worth.evidence; });
 }
 
-/// Whether it does as the source stands.
-bool mirror_fits_better(PoseSearch& search, const Worth& than) {
+/// Whether the source's mirror image fits where the source does not. It may stand on its head, as where z points down:
+/// the source is left standing like the target.
+bool is_mirrored(PoseSearch& search, const Worth& than) {
+  search.stand_like_target();
   const std::vector<JudgedPose> mirrored = search.search(true);
   if (mirrored.empty()) return false;
   const Fit fit = fit_at(search, search.settled(mirrored.front().local));
   return fit.convinces() && fit.worth.evidence > kMirrorBetter * than.evidence;
-}
-
-/// Whether the source's mirror image fits where the source does not, as it most plausibly stands or on its head, as
-/// where z points down; the source is left standing so.
-bool is_mirrored(PoseSearch& search, const Worth& than) {
-  constexpr std::size_t kStances = 2;
-  for (std::size_t stance = 0; stance < std::min(kStances, search.n_stances()); ++stance) {
-    search.stand(stance);
-    if (mirror_fits_better(search, than)) return true;
-  }
-  return false;
 }
 
 std::string fit_text(const Fit& fit) {
