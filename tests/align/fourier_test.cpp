@@ -30,7 +30,21 @@ TEST(Fourier, ProductsOfSpectraAreCyclicConvolutions) {
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i].real() / 256.0f, i == 1 * 16 + 1 ? 6.0f : 0.0f, 1e-4f);
 }
 
-TEST(Fourier, OtherSidesAreRefused) { EXPECT_THROW(Fourier2d(24), std::invalid_argument); }
+/// By the definition, transposed.
+TEST(Fourier, OfOneWave) {
+  constexpr std::size_t kSide = 12;
+  Fourier2d::Grid grid(kSide * kSide);
+  for (std::size_t row = 0; row < kSide; ++row) {
+    for (std::size_t column = 0; column < kSide; ++column) {
+      const double phase = 2.0 * M_PI * static_cast<double>(2 * row + 5 * column) / kSide;
+      grid[row * kSide + column] = std::polar(1.0f, static_cast<float>(phase));
+    }
+  }
+  Fourier2d(kSide).transform(grid);
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    EXPECT_NEAR(std::abs(grid[i]), i == 5 * kSide + 2 ? 144.0f : 0.0f, 1e-3f) << i;
+  }
+}
 
 }  // namespace fourier_test
 }  // namespace cmap
