@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
+#include <algorithm>
 #include <cmath>
 
 #include "cmap/core/error.hpp"
@@ -45,6 +46,12 @@ Similarity similarity_from(const Eigen::Matrix4d& matrix) {
                     deviation, kTolerance));
   }
   return {scale, rotation, matrix.topRightCorner<3, 1>()};
+}
+
+double farthest_apart(const Similarity& a, const Similarity& b, std::span<const Eigen::Vector3d> points) {
+  double farthest = 0.0;
+  for (const Eigen::Vector3d& point : points) farthest = std::max(farthest, (a * point - b * point).norm());
+  return farthest;
 }
 
 }  // namespace cmap

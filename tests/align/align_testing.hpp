@@ -38,9 +38,7 @@ inline Similarity random_similarity(std::mt19937_64& random, double low_scale, d
 
 /// The largest displacement between two transforms on the corners of the box of a cloud, m.
 inline double displacement_m(const Similarity& a, const Similarity& b, const PointCloud& cloud) {
-  double largest = 0.0;
-  for (const Eigen::Vector3d& x : corners(bounds(cloud))) largest = std::max(largest, (a * x - b * x).norm());
-  return largest;
+  return farthest_apart(a, b, corners(bounds(cloud)));
 }
 
 inline double angle_between_deg(const Similarity& a, const Similarity& b) {

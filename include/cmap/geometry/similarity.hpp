@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 
 #include "cmap/geometry/rotation.hpp"
 
@@ -29,5 +30,8 @@ struct Similarity {
 /// The similarity that a homogeneous matrix stands for; its rotation is made orthonormal. Throws UnsupportedError where
 /// the linear part deviates by more than 1e-3 from a rotation times a positive scale.
 Similarity similarity_from(const Eigen::Matrix4d& matrix);
+
+/// The farthest that two of them place one of the points apart.
+double farthest_apart(const Similarity& a, const Similarity& b, std::span<const Eigen::Vector3d> points);
 
 }  // namespace cmap

@@ -265,12 +265,8 @@ double PoseSearch::advantage_of(const JudgedPose& pose, const JudgedPose& rival,
 }
 
 double PoseSearch::apart_m(const Similarity& a, const Similarity& b) const {
-  double farthest = 0.0;
-  for (const Eigen::Vector3d& corner : corners(bounds(thinned_source_))) {
-    const Eigen::Vector3d p = corner - source_origin_;
-    farthest = std::max(farthest, (a * p - b * p).norm());
-  }
-  return farthest;
+  const Box3d box = bounds(thinned_source_);
+  return farthest_apart(a, b, corners({box.min - source_origin_, box.max - source_origin_}));
 }
 
 double size_of(const PointCloud& cloud) {
