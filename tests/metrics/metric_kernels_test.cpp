@@ -18,15 +18,25 @@ class MetricKernels : public testing::TestWithParam<SimdLevel> {
   const cmap::MetricKernels& level() const { return metric_kernels_for(GetParam()); }
 };
 
+struct PointsInBox {
+  PointBlocks points;
+  Box3d box;
+};
+
 /// A block of points far from the world's origin, some on faces of voxels and halves of them.
-PointBlock points_on_and_off_faces() {
+PointsInBox points_on_and_off_faces() {
   PointBlock block;
   for (std::size_t i = 0; i < kBlockSize; ++i) {
     block.x[i] = -3.0f + 0.25f * static_cast<float>(i);
     block.y[i] = -2.0f + 0.37f * static_cast<float>(i);
     block.z[i] = 5.0f - 0.5f * static_cast<float>(i);
   }
-  return block;
+  PointBlocks points;
+  points.origin = {448'000.25, -5'411'000.5, 0.0};
+  points.blocks.push_back(block);
+  points.size = kBlockSize;
+  const Eigen::Vector3d half(20, 20, 20);
+  return {points, {points.origin - half, points.origin + half}};
 }
 
 /// floor(m x / voxel) - m floor(x / voxel).
@@ -35,11 +45,7 @@ std::int32_t part_of(double x, double voxel_m, int m) {
 }
 
 TEST_P(MetricKernels, PlacesAreThoseOfTheFrame) {
-  PointBlocks points;
-  points.origin = {448'000.25, -5'411'000.5, 0.0};
-  points.blocks.push_back(points_on_and_off_faces());
-  points.size = kBlockSize;
-  const Box3d box{points.origin - Eigen::Vector3d(20, 20, 20), points.origin + Eigen::Vector3d(20, 20, 20)};
+  const auto [points, box] = points_on_and_off_faces();
   for (const int m : {1, 2, 3}) {
     const VoxelFrame frame(box, 0.5);
     GridPlaces places;
@@ -56,11 +62,7 @@ TEST_P(MetricKernels, PlacesAreThoseOfTheFrame) {
 }
 
 TEST_P(MetricKernels, OffsetsAreThoseOfThePlainOnes) {
-  PointBlocks points;
-  points.origin = {448'000.25, -5'411'000.5, 0.0};
-  points.blocks.push_back(points_on_and_off_faces());
-  points.size = kBlockSize;
-  const Box3d box{points.origin - Eigen::Vector3d(20, 20, 20), points.origin + Eigen::Vector3d(20, 20, 20)};
+  const auto [points, box] = points_on_and_off_faces();
   for (const double voxel_m : {0.3, 0.5, 3.9}) {
     const PartGrid grid = part_grid(points, VoxelFrame(box, voxel_m), 1, 4);
     GridPlaces places;
