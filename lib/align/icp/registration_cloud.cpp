@@ -26,8 +26,10 @@ constexpr double kUndeterminedCondition = 1e-6;
 
 void require_observable(const Observability& found) {
   if (found.condition > kUndeterminedCondition) return;
-  throw UnsupportedError(
-      fmt::format("the alignment is not determined: {} is free (condition {:.1e})", found.weakest, found.condition));
+  throw UnsupportedError(fmt::format(
+      "the alignment is not determined: {} is free (condition {:.1e}), as where a single plane or a corridor "
+      "matches; maps that share more may help, or a start nearer to the right pose",
+      found.weakest, found.condition));
 }
 
 }  // namespace
