@@ -1,11 +1,7 @@
 #include "last_steps.hpp"
 
-#include <algorithm>
-
 #include "cmap/align/icp.hpp"
 #include "cmap/core/error.hpp"
-#include "cmap/geometry/order_statistics.hpp"
-#include "cmap/spatial/k_nearest.hpp"
 
 namespace cmap {
 
@@ -32,18 +28,17 @@ bool settle_on_common_points(const PointCloud& source, const PointCloud& target,
   }
 }
 
-void sharpen(const PointCloud& source, const PointCloud& target, const RegistrationMethod& method,
-             const AlignOptions& options, Alignment& found) {
+void sharpen(const PointCloud& source, const PointCloud& target, const RegistrationMethod& method, bool with_scale,
+             double voxel_m, Alignment& found) {
   constexpr std::size_t kMostPoints = 100'000;
   constexpr double kWorthIt = 0.75;  // of the voxel so far
-  const double voxel_m = std::max(*options.finest_m, finest_voxel_m(target));
   if (voxel_m > kWorthIt * found.voxel_m) return;
   const bool is_own = method.needs_initial && method.scale == ScaleRule::kOnRequest;
   const RegistrationMethod& finer = is_own ? method : registration_method("gicp");
   try {
     AlignOptions how;
     how.T_initial = found.T_dst_src;
-    how.with_scale = options.with_scale || method.scale == ScaleRule::kAlways;
+    how.with_scale = with_scale;
     how.most_points = kMostPoints;
     Alignment sharper = finer.run(source, target, how, voxel_m);
     const Similarity judged = similarity_from(found.T_dst_src), sharp = similarity_from(sharper.T_dst_src);
@@ -55,23 +50,6 @@ void sharpen(const PointCloud& source, const PointCloud& target, const Registrat
   } catch (const UnsupportedError&) {
     // Too little lies so near to each other: what was found stands.
   }
-}
-
-double finest_voxel_m(const PointCloud& cloud) {
-  constexpr std::size_t kSample = 20'000;
-  constexpr double kSpacings = 2.0;
-  const Bvh index(sort_points(cloud));
-  Array<std::uint32_t> slots;
-  for (std::size_t slot = 0; slot < cloud.size(); slot += cloud.size() / kSample + 1) {
-    slots.push_back(static_cast<std::uint32_t>(slot));
-  }
-  const Array<std::uint32_t> nearest_two = find_k_nearest(index, chosen_points(index.points, slots), 2);
-  Array<double> spacing_m(slots.size());
-  for (std::size_t i = 0; i < slots.size(); ++i) {
-    const std::uint32_t other = nearest_two[2 * i + 1];
-    spacing_m[i] = other == kNoNeighbor ? 0.0 : (index.points.offset(slots[i]) - index.points.offset(other)).norm();
-  }
-  return kSpacings * upper_median(spacing_m);
 }
 
 }  // namespace cmap

@@ -8,12 +8,8 @@ namespace cmap {
 /// points themselves leave none: they are tried, and taken where they come to lie on each other. Returns whether.
 bool settle_on_common_points(const PointCloud& source, const PointCloud& target, bool with_scale, Alignment& found);
 
-/// Goes on from what was found to the finest distance that is to be measured. A step that leads away from what was
-/// judged is not taken.
-void sharpen(const PointCloud& source, const PointCloud& target, const RegistrationMethod& method,
-             const AlignOptions& options, Alignment& found);
-
-/// The finest voxel that points support: twice their median spacing.
-double finest_voxel_m(const PointCloud& cloud);
+/// Goes on from what was found to levels of this voxel. A step that leads away from what was judged is not taken.
+void sharpen(const PointCloud& source, const PointCloud& target, const RegistrationMethod& method, bool with_scale,
+             double voxel_m, Alignment& found);
 
 }  // namespace cmap

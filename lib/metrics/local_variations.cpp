@@ -34,7 +34,11 @@ class VoxelRows {
 
   std::span<const Row> rows() const { return rows_; }
   double y(std::size_t place) const { return y_[place]; }
-  double distance_m(std::size_t place) const { return distance_m_[place]; }
+  /// The first place in a row from this y on; its end where there is none.
+  std::size_t first_from(const Row& row, double y) const {
+    const auto ys = std::span(y_).subspan(row.begin, row.end - row.begin);
+    return row.begin + static_cast<std::size_t>(std::ranges::lower_bound(ys, y) - ys.begin());
+  }
   std::size_t place(std::size_t voxel) const { return place_[voxel]; }
 
   NearSums near_sums(std::span<const Stretch> stretches, std::size_t center, double radius) const {
@@ -64,8 +68,8 @@ class Neighborhood {
   Neighborhood(const VoxelRows& voxels, int radius) : voxels_(voxels), radius_(radius) {}
 
   std::span<const Stretch> around(const VoxelIndex& center) {
-    if (stretches_.empty() || center[0] != x_) enter_row(center[0]);
     const auto y = static_cast<double>(center[1]);
+    if (stretches_.empty() || center[0] != x_) enter_row(center[0], y);
     for (std::size_t i = 0; i < stretches_.size(); ++i) {
       auto& [begin, end] = stretches_[i];
       const std::size_t row_end = rows_[i].end;
@@ -78,13 +82,16 @@ class Neighborhood {
  private:
   using Row = VoxelRows::Row;
 
-  void enter_row(std::int64_t x) {
+  void enter_row(std::int64_t x, double y) {
     x_ = x;
     const auto first = std::ranges::lower_bound(voxels_.rows(), x - radius_, {}, &Row::x);
     const auto end = std::ranges::upper_bound(voxels_.rows(), x + radius_, {}, &Row::x);
     rows_ = {first, end};
     stretches_.clear();
-    for (const Row& row : rows_) stretches_.push_back({row.begin, row.begin});
+    for (const Row& row : rows_) {
+      const std::size_t begin = voxels_.first_from(row, y - radius_);
+      stretches_.push_back({begin, begin});
+    }
   }
 
   const VoxelRows& voxels_;

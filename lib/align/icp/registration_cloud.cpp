@@ -11,6 +11,7 @@
 #include "cmap/core/parallel.hpp"
 #include "cmap/geometry/order_statistics.hpp"
 #include "cmap/geometry/voxel_map.hpp"
+#include "cmap/spatial/k_nearest.hpp"
 
 namespace cmap {
 namespace {
@@ -51,6 +52,16 @@ Array<std::uint32_t> every_few(std::size_t n, std::size_t most) {
   const std::size_t step = (n + most - 1) / most;
   for (std::size_t slot = step / 2; slot < n; slot += step) slots.push_back(static_cast<std::uint32_t>(slot));
   return slots;
+}
+
+double median_spacing_m(const Bvh& index, const Array<std::uint32_t>& slots) {
+  const Array<std::uint32_t> nearest_two = find_k_nearest(index, chosen_points(index.points, slots), 2);
+  Array<double> spacing_m(slots.size());
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    const std::uint32_t other = nearest_two[2 * i + 1];
+    spacing_m[i] = other == kNoNeighbor ? 0.0 : (index.points.offset(slots[i]) - index.points.offset(other)).norm();
+  }
+  return upper_median(spacing_m);
 }
 
 void RegistrationTarget::fit_surface(const NearestField& field, double max_distance_m) {

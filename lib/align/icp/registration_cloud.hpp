@@ -13,6 +13,9 @@ PointCloud thinned_to(const PointCloud& cloud, double voxel_m);
 /// At most about `most` of n slots, evenly along the curve that they follow.
 Array<std::uint32_t> every_few(std::size_t n, std::size_t most);
 
+/// Of the points at some slots, the median distance to their nearest neighbor, m.
+double median_spacing_m(const Bvh& index, const Array<std::uint32_t>& slots);
+
 /// Targets are thinned to half the source's voxel: two lattices of one voxel lock into each other wherever they start,
 /// which keeps shifts of half a voxel and scales of a few percent from being seen at all.
 inline PointCloud thinned_target(const PointCloud& cloud, double voxel_m) { return thinned_to(cloud, 0.5 * voxel_m); }

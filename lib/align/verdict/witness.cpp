@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cmap/geometry/order_statistics.hpp"
 #include "cmap/geometry/voxel_map.hpp"
-#include "cmap/spatial/k_nearest.hpp"
 
 namespace cmap {
 namespace {
@@ -19,14 +17,7 @@ constexpr double kFullBlock = 3.0;   ///< points from which a block counts as on
 
 double spacing_of(const Bvh& index) {
   constexpr std::size_t kSample = 1000;
-  const Array<std::uint32_t> slots = every_few(index.points.size, kSample);
-  const Array<std::uint32_t> nearest = find_k_nearest(index, chosen_points(index.points, slots), 2);
-  Array<double> spacing(slots.size());
-  for (std::size_t i = 0; i < slots.size(); ++i) {
-    const std::uint32_t other = nearest[2 * i + 1];
-    spacing[i] = other == kNoNeighbor ? 0.0 : (index.points.offset(slots[i]) - index.points.offset(other)).norm();
-  }
-  return upper_median(spacing);
+  return median_spacing_m(index, every_few(index.points.size, kSample));
 }
 
 }  // namespace
