@@ -152,6 +152,9 @@ void refuse_unused(const cmap::CommandLine& line, const cmap::AlignMethod& metho
     throw cmap::UsageError(
         fmt::format("{} has no meaning for --method {}", option, name_of(method, cmap::align_method_names())));
   }
+  if (line.has("--voxel") && line.has("--finest")) {
+    throw cmap::UsageError("--finest has no meaning beside --voxel, which says where levels end");
+  }
 }
 
 /// The maps, where something is to be written of them.

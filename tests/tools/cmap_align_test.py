@@ -214,6 +214,7 @@ class Align(WithFolders):
         self.refused(USAGE, "--voxel", REFERENCE, REFERENCE, "--voxel", -1)
         self.refused(USAGE, "--tau has no meaning for --method gicp", REFERENCE, REFERENCE, "--tau", 1)
         self.refused(USAGE, "--scale has no meaning for --method sim3", REFERENCE, REFERENCE, "--method", "sim3", "--scale")
+        self.refused(USAGE, "--finest has no meaning beside --voxel", REFERENCE, REFERENCE, "--voxel", 1, "--finest", 0.1)
         result = self.run_program(REFERENCE, REFERENCE, "-o", "/none/T.txt")
         self.assertEqual(result.returncode, USAGE)
         flat = self.input("flat.ply", plane(100))
