@@ -5,6 +5,7 @@
 #include "cmap/align/trajectory.hpp"
 #include "cmap/core/parallel.hpp"
 #include "cmap/geometry/voxel_map.hpp"
+#include "cmap/io/lidar_scan_file.hpp"
 
 namespace cmap {
 namespace {
