@@ -14,8 +14,8 @@ StateVector kalman_step(const NavState& estimate, const NavState& predicted, con
   const StateMatrix prior = predicted_covariance.llt().solve(StateMatrix::Identity());
   StateMatrix information = J.transpose() * prior * J;
   StateVector gradient = J.transpose() * (prior * from_predicted);
-  information.topLeftCorner<12, 12>() += Eigen::Matrix<double, 12, 12>(system.information.selfadjointView<Eigen::Lower>());
-  gradient.head<12>() += system.gradient;
+  information.topLeftCorner<6, 6>() += system.information;
+  gradient.head<6>() += system.gradient;
   covariance = information.llt().solve(StateMatrix::Identity());
   covariance = 0.5 * (covariance + covariance.transpose()).eval();
   return -(covariance * gradient);

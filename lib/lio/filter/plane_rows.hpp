@@ -6,39 +6,36 @@
 
 namespace cmap {
 
-/// A point's distance to a plane as a function of the state at the scan's end: one row of the measurement.
+using PoseVector = Eigen::Matrix<double, 6, 1>;
+using PoseMatrix = Eigen::Matrix<double, 6, 6>;
+
+/// A point's distance to a plane as a function of the pose at the scan's end: one row of the measurement.
 struct PlaneRow {
   double residual_m = 0.0;
   double variance_m2 = 0.0;
-  /// Of the residual by the errors of rotation, position, velocity and gyro bias, in that order.
-  Eigen::Matrix<double, 12, 1> jacobian;
+  PoseVector jacobian = PoseVector::Zero();  ///< of the residual by the errors of rotation and position
 };
 
-/// @param normal      of the plane, world
-/// @param arm_end     from the body's origin to the point, both at the point's time, in the body's axes at the end
-/// @param before_end  of the point's time, s
-/// The world point is R_end arm_end + p(t), and a change of the state at the end reaches back to p(t) and the turn as
-/// MotionTrack says.
-inline Eigen::Matrix<double, 12, 1> plane_jacobian(const Eigen::Matrix3d& R_end, const Eigen::Vector3d& normal,
-                                                   const Eigen::Vector3d& arm_end, double before_end_s) {
-  const Eigen::Vector3d turn = arm_end.cross(R_end.transpose() * normal);
-  Eigen::Matrix<double, 12, 1> jacobian;
-  jacobian << turn, normal, -before_end_s * normal, before_end_s * turn;
+/// @param normal   of the plane, world
+/// @param arm_end  from the body's origin to the point, both at the point's time, in the body's axes at the end
+/// @param share    of a change of the pose at the end there is at the point's time (MotionTrack::share_at)
+inline PoseVector plane_jacobian(const Eigen::Matrix3d& R_end, const Eigen::Vector3d& normal,
+                                 const Eigen::Vector3d& arm_end, double share) {
+  PoseVector jacobian;
+  jacobian << share * arm_end.cross(R_end.transpose() * normal), share * normal;
   return jacobian;
 }
 
 /// Sums of rows, each by the inverse of its variance: the normal equations J^T J x = -J^T r.
 struct PlaneSystem {
-  Eigen::Matrix<double, 12, 12> information = Eigen::Matrix<double, 12, 12>::Zero();
-  Eigen::Matrix<double, 12, 1> gradient = Eigen::Matrix<double, 12, 1>::Zero();
-  double sq_sum = 0.0;  ///< of residuals over their standard deviations
+  PoseMatrix information = PoseMatrix::Zero();
+  PoseVector gradient = PoseVector::Zero();
   std::size_t n = 0;
 
   void add(const PlaneRow& row, double weight) {
     const double w = weight / row.variance_m2;
-    information.selfadjointView<Eigen::Lower>().rankUpdate(row.jacobian, w);
+    information += (w * row.jacobian) * row.jacobian.transpose();
     gradient += w * row.residual_m * row.jacobian;
-    sq_sum += w * row.residual_m * row.residual_m;
     ++n;
   }
 };

@@ -38,14 +38,10 @@ OpenDirections open_directions(const PlaneDirections& directions, double least_p
 }
 
 void remove_open(PlaneSystem& system, const OpenDirections& open) {
-  const Eigen::Matrix3d shifts = without(open.shifts), turns = without(open.turns);
-  Eigen::Matrix<double, 12, 12> projection = Eigen::Matrix<double, 12, 12>::Zero();
-  projection.block<3, 3>(part::kRotation, part::kRotation) = turns;
-  projection.block<3, 3>(part::kPosition, part::kPosition) = shifts;
-  projection.block<3, 3>(part::kVelocity, part::kVelocity) = shifts;
-  projection.block<3, 3>(part::kGyroBias, part::kGyroBias) = turns;
-  const Eigen::Matrix<double, 12, 12> full = system.information.selfadjointView<Eigen::Lower>();
-  system.information = projection * full * projection;
+  PoseMatrix projection = PoseMatrix::Zero();
+  projection.block<3, 3>(part::kRotation, part::kRotation) = without(open.turns);
+  projection.block<3, 3>(part::kPosition, part::kPosition) = without(open.shifts);
+  system.information = projection * system.information * projection;
   system.gradient = projection * system.gradient;
 }
 

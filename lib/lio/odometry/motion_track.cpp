@@ -10,6 +10,11 @@ constexpr std::size_t kSteps = 256;
 
 }  // namespace
 
+double MotionTrack::share_at(double time_s) const {
+  if (!kept_s_) return 1.0;
+  return std::clamp((time_s - *kept_s_) / (end_s() - *kept_s_), 0.0, 1.0);
+}
+
 Eigen::Isometry3d MotionTrack::pose(double time_s, const NavState& estimate) const {
   const double tau = end_s() - time_s;
   Eigen::Quaterniond rotation;
@@ -26,13 +31,19 @@ Eigen::Isometry3d MotionTrack::pose(double time_s, const NavState& estimate) con
     position = from.position + share * (to.position - from.position);
   }
   const StateVector change = difference(estimate, predicted_);
-  const Eigen::Vector3d turn_at_end =
-      change.segment<3>(part::kRotation) + tau * change.segment<3>(part::kGyroBias);
+  Eigen::Vector3d turn_at_end = change.segment<3>(part::kRotation), shift = change.segment<3>(part::kPosition);
+  if (kept_s_) {
+    turn_at_end *= share_at(time_s);
+    shift *= share_at(time_s);
+  } else {
+    turn_at_end += tau * change.segment<3>(part::kGyroBias);
+    shift -= tau * change.segment<3>(part::kVelocity);
+  }
   // The turn is in the body's axes at the end; here in those at the time.
   const Eigen::Vector3d turn = rotation.conjugate() * (predicted_.rotation * turn_at_end);
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.linear() = (rotation * rotation_exp(turn)).toRotationMatrix();
-  T.translation() = position + change.segment<3>(part::kPosition) - tau * change.segment<3>(part::kVelocity);
+  T.translation() = position + shift;
   return T;
 }
 
@@ -43,7 +54,9 @@ ScanPoses::ScanPoses(const MotionTrack& track, const NavState& estimate, const E
   poses_.reserve(n + 1);
   for (std::size_t i = 0; i <= n; ++i) {
     const double before_s = n == 0 ? 0.0 : span_s * static_cast<double>(i) / static_cast<double>(n);
-    poses_.push_back(track.pose(track.end_s() - before_s, estimate) * T_body_lidar);
+    const double time_s = track.end_s() - before_s;
+    const Eigen::Isometry3d T_world_body = track.pose(time_s, estimate);
+    poses_.push_back({T_world_body * T_body_lidar, T_world_body.translation(), track.share_at(time_s)});
   }
 }
 

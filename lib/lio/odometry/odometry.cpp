@@ -13,11 +13,15 @@
 namespace cmap {
 namespace {
 
-/// Fewer matches, or a smaller share of the points, are no registration.
+/// Fewer matches, or a smaller share of the points once the map has its first scans, are no registration.
 constexpr std::size_t kLeastMatches = 30;
 constexpr double kLeastShare = 0.15;
 /// So many scans without registration, one after the other, and the map begins anew.
 constexpr int kMostMissed = 10;
+/// A scan goes into the map where the sensor has moved so far since the last that did, or is one of the first: seen from
+/// one place again and again, cells would be settled by the same few points.
+constexpr double kInsertStep_m = 0.1, kInsertTurn_rad = 1.0 * std::numbers::pi / 180.0;
+constexpr int kFirstScans = 10;
 /// Of poses before a scan's begin that its first points may need: stamps and cuts of turns wander.
 constexpr double kHistory_s = 0.5;
 
@@ -80,6 +84,8 @@ struct Odometry::State {
   Trajectory track;  ///< the last poses
   bool started = false;
   int n_missed = 0;
+  int n_inserted = 0;
+  NavState at_insert;  ///< where the last scan went into the map
   double last_end_s = 0.0;
   bool any_scan = false;
   OdometrySummary summary;
@@ -94,6 +100,7 @@ struct Odometry::State {
   void process(const ScanPoints& scan);
   MotionTrack predict(double to_s, StateMatrix& predicted_covariance) const;
   ScanOutcome outcome_of(const ScanRegistration& found);
+  bool adds_to_map() const;
   void insert(const ScanPoints& scan, const MotionTrack& track);
   void deliver(const ScanPoints& scan, const MotionTrack& track, OdometryScan result, double cpu_begin_s);
   std::vector<MotionInput> inputs(double from_s, double to_s) const;
@@ -181,7 +188,7 @@ void Odometry::State::begin(bool alone) {
   track = {stamped(first.begin_s, start.at_begin)};
   if (first.end_s > first.begin_s) track.push_back(stamped(first.end_s, nav));
   started = true;
-  const MotionTrack motion(track, nav);
+  const MotionTrack motion(track, nav, std::nullopt);
   insert(first, motion);
   OdometryScan result;
   result.outcome = ScanOutcome::kFirst;
@@ -204,12 +211,13 @@ MotionTrack Odometry::State::predict(double to_s, StateMatrix& predicted_covaria
     poses.push_back(stamped(t += input.duration_s, state));
   }
   poses.back().time_s = to_s;
-  return MotionTrack(std::move(poses), state);
+  const std::optional<double> kept_s = options.use_imu ? std::nullopt : std::optional(track.back().time_s);
+  return MotionTrack(std::move(poses), state, kept_s);
 }
 
 ScanOutcome Odometry::State::outcome_of(const ScanRegistration& found) {
   const auto share = static_cast<double>(found.n_matches) / std::max(1.0, static_cast<double>(found.n_points));
-  if (found.n_matches >= kLeastMatches && share >= kLeastShare) {
+  if (found.n_matches >= kLeastMatches && (share >= kLeastShare || n_inserted < kFirstScans)) {
     n_missed = 0;
     return ScanOutcome::kRegistered;
   }
@@ -233,17 +241,27 @@ void Odometry::State::process(const ScanPoints& scan) {
   nav = registered ? found.state : motion.predicted();
   covariance = registered ? found.covariance : predicted_covariance;
   summary.path_m += (nav.position - before).norm();
-  if (result.outcome == ScanOutcome::kNewMap) map = PlaneMap(map_options(options));
+  if (result.outcome == ScanOutcome::kNewMap) {
+    map = PlaneMap(map_options(options));
+    n_inserted = 0;
+  }
   result.n_chosen = found.n_points;
   result.n_matches = found.n_matches;
   result.rms_m = found.rms_m;
   result.open_shifts_world = found.open.shifts;
   result.open_turns_imu = found.open.turns;
-  if (result.outcome != ScanOutcome::kPredicted) insert(scan, motion);
+  if (result.outcome != ScanOutcome::kPredicted && adds_to_map()) insert(scan, motion);
   deliver(scan, motion, std::move(result), cpu_begin_s);
 }
 
+bool Odometry::State::adds_to_map() const {
+  return n_inserted < kFirstScans || (nav.position - at_insert.position).norm() > kInsertStep_m ||
+         nav.rotation.angularDistance(at_insert.rotation) > kInsertTurn_rad;
+}
+
 void Odometry::State::insert(const ScanPoints& scan, const MotionTrack& motion) {
+  ++n_inserted;
+  at_insert = nav;
   const ScanPoses poses(motion, nav, T_imu_lidar, scan.end_s - scan.begin_s);
   const double beam = options.beam_noise_deg * std::numbers::pi / 180.0;
   std::vector<MapPoint> points;
@@ -252,7 +270,7 @@ void Odometry::State::insert(const ScanPoints& scan, const MotionTrack& motion) 
     // Across a surface at 45 degrees.
     const double variance =
         0.5 * (options.range_noise_m * options.range_noise_m + beam * beam * p.squaredNorm());
-    points.push_back({poses.T_world_lidar(scan.before_end_s[i]) * p, variance});
+    points.push_back({poses.at(scan.before_end_s[i]).T_world_lidar * p, variance});
   }
   map.add(points, summary.path_m);
 }
@@ -263,7 +281,7 @@ void Odometry::State::deliver(const ScanPoints& scan, const MotionTrack& motion,
   const ScanPoses poses(motion, nav, T_imu_lidar, scan.end_s - scan.begin_s);
   result.points.reserve(scan.positions.size());
   for (std::size_t i = 0; i < scan.positions.size(); ++i) {
-    const Eigen::Vector3d world = poses.T_world_lidar(scan.before_end_s[i]) * scan.positions[i].cast<double>();
+    const Eigen::Vector3d world = poses.at(scan.before_end_s[i]).T_world_lidar * scan.positions[i].cast<double>();
     result.points.push_back((T_imu_world * world).cast<float>());
   }
   const double from_s = track.back().time_s;

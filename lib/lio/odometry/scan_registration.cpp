@@ -13,16 +13,14 @@ constexpr double kRotationDone_rad = 1e-5, kShiftDone_m = 1e-4;
 /// One pass over the points: planes at the estimate, and the system that they make.
 class MatchingPass {
  public:
-  MatchingPass(const PlaneMap& map, const OdometryOptions& options, const NavState& estimate, const StateMatrix& prior)
+  MatchingPass(const PlaneMap& map, const OdometryOptions& options, const NavState& estimate, const PoseMatrix& prior)
       : map_(map), options_(options), R_end_(estimate.rotation.toRotationMatrix()), prior_(prior) {}
 
-  void add(const Eigen::Vector3f& point, float before_end_s, const Eigen::Isometry3d& T_world_lidar,
-           const Eigen::Vector3d& body_position) {
-    const Eigen::Vector3d p = point.cast<double>(), world = T_world_lidar * p;
-    const Eigen::Vector3d arm = R_end_.transpose() * (world - body_position);
+  void add(const Eigen::Vector3f& point, const ScanPoses::Pose& pose) {
+    const Eigen::Vector3d p = point.cast<double>(), world = pose.T_world_lidar * p;
     PlaneRow row;
-    const Plane* plane = match(map_.find(world), p, T_world_lidar, world, arm, before_end_s, row);
-    if (plane == nullptr) plane = match(map_.find_beside(world), p, T_world_lidar, world, arm, before_end_s, row);
+    const Plane* plane = match(map_.find(world), p, world, pose, row);
+    if (plane == nullptr) plane = match(map_.find_beside(world), p, world, pose, row);
     if (plane == nullptr) return;
     // Cauchy's weight: what is three standard deviations off counts a tenth.
     const double sq_deviations = row.residual_m * row.residual_m / row.variance_m2;
@@ -37,8 +35,8 @@ class MatchingPass {
   double sq_sum_m2 = 0.0;
 
  private:
-  const Plane* match(const Plane* plane, const Eigen::Vector3d& p, const Eigen::Isometry3d& T_world_lidar,
-                     const Eigen::Vector3d& world, const Eigen::Vector3d& arm, float before_end_s, PlaneRow& row) const {
+  const Plane* match(const Plane* plane, const Eigen::Vector3d& p, const Eigen::Vector3d& world,
+                     const ScanPoses::Pose& pose, PlaneRow& row) const {
     if (plane == nullptr) return nullptr;
     const Eigen::Vector3d normal = plane->normal.cast<double>();
     const Eigen::Vector3f from_center = (world - plane->center).cast<float>();
@@ -47,9 +45,10 @@ class MatchingPass {
       return nullptr;
     row.residual_m = normal.dot(world - plane->center);
     row.variance_m2 = options_.model_noise_m * options_.model_noise_m + plane->variance_at(from_center) +
-                      point_variance_m2(p, T_world_lidar.linear().transpose() * normal, options_);
-    row.jacobian = plane_jacobian(R_end_, normal, arm, static_cast<double>(before_end_s));
-    const double gate_m2 = row.variance_m2 + row.jacobian.dot(prior_.topLeftCorner<12, 12>() * row.jacobian);
+                      point_variance_m2(p, pose.T_world_lidar.linear().transpose() * normal, options_);
+    const Eigen::Vector3d arm = R_end_.transpose() * (world - pose.body_position);
+    row.jacobian = plane_jacobian(R_end_, normal, arm, pose.share);
+    const double gate_m2 = row.variance_m2 + row.jacobian.dot(prior_ * row.jacobian);
     if (row.residual_m * row.residual_m > options_.gate * options_.gate * gate_m2) return nullptr;
     return plane;
   }
@@ -57,7 +56,7 @@ class MatchingPass {
   const PlaneMap& map_;
   const OdometryOptions& options_;
   Eigen::Matrix3d R_end_;
-  const StateMatrix& prior_;
+  const PoseMatrix& prior_;
 };
 
 bool is_small(const StateVector& change) {
@@ -82,16 +81,12 @@ ScanRegistration register_scan(const PlaneMap& map, const ScanPoints& scan, std:
   result.state = track.predicted();
   result.covariance = predicted_covariance;
   result.n_points = chosen.size();
-  const Eigen::Vector3d body_in_lidar = -(T_body_lidar.linear().transpose() * T_body_lidar.translation());
-  StateMatrix gate = predicted_covariance;
+  PoseMatrix gate = predicted_covariance.topLeftCorner<6, 6>();
   for (result.iterations = 0; result.iterations < options.iterations;) {
     ++result.iterations;
     const ScanPoses poses(track, result.state, T_body_lidar, scan.end_s - scan.begin_s);
     MatchingPass pass(map, options, result.state, gate);
-    for (const std::uint32_t i : chosen) {
-      const Eigen::Isometry3d& T = poses.T_world_lidar(scan.before_end_s[i]);
-      pass.add(scan.positions[i], scan.before_end_s[i], T, T * body_in_lidar);
-    }
+    for (const std::uint32_t i : chosen) pass.add(scan.positions[i], poses.at(scan.before_end_s[i]));
     result.n_matches = pass.system.n;
     if (result.n_matches == 0) return result;
     result.rms_m = std::sqrt(pass.sq_sum_m2 / static_cast<double>(result.n_matches));
