@@ -5,7 +5,6 @@
 #include <cmath>
 #include <vector>
 
-#include "cmap/geometry/order_statistics.hpp"
 #include "cmap/spatial/k_nearest.hpp"
 #include "loops/plane_grid.hpp"
 
@@ -23,9 +22,9 @@ inline double sigma_across_m(const std::vector<Eigen::Vector3d>& points) {
   return std::sqrt(std::max(0.0, axes.eigenvalues()[0]));
 }
 
-/// Median, over patches of wall, of the standard deviation of a cloud's points near them across a plane of their own:
-/// within 0.25 m of the patch's middle along it, and 0.3 m across, so that a double wall counts whole.
-inline double wall_thickness_m(const PointCloud& cloud, const PlaneGrid& walls) {
+/// Of every patch of wall with enough points, the standard deviation of a cloud's points near them across a plane of
+/// their own: within 0.25 m of the patch's middle along it, and 0.3 m across, so that a double wall counts whole.
+inline std::vector<double> wall_thickness_m(const PointCloud& cloud, const PlaneGrid& walls) {
   constexpr double kAlong_m = 0.25, kAcross_m = 0.3;
   constexpr std::size_t kFewest = 6, kNeighbors = 64;
   const Bvh index(sort_points(cloud));
@@ -47,7 +46,7 @@ inline double wall_thickness_m(const PointCloud& cloud, const PlaneGrid& walls) 
     }
     if (points.size() >= kFewest) all.push_back(sigma_across_m(points));
   }
-  return all.empty() ? std::nan("") : median(all);
+  return all;
 }
 
 }  // namespace cmap::test
