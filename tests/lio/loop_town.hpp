@@ -69,7 +69,7 @@ inline Array<Eigen::Vector3f> deskewed(const LidarScan& scan, const PoseSpline& 
                                        const Eigen::Isometry3d& T_imu_lidar, double voxel_m) {
   const Eigen::Isometry3d T_body_world = path.pose(scan.timestamp_s).inverse();
   PointCloud cloud;
-  Eigen::Isometry3d T;
+  Eigen::Isometry3d T = T_imu_lidar;
   float time_s = -1.0F;
   for (std::size_t i = 0; i < scan.positions.size(); ++i) {
     if (scan.time_s[i] != time_s) {
