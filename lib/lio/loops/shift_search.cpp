@@ -10,7 +10,7 @@ namespace cmap {
 namespace {
 
 constexpr int kApartCells = 4;
-constexpr double kApart_rad = 0.35;
+constexpr double kApartTurn_rad = 0.35;
 
 /// Sums of products, a row a shift in y.
 struct ShiftScores {
@@ -112,7 +112,7 @@ std::vector<PlanarPose> best_planar_poses(const BirdsEye& source, const BirdsEye
   const auto is_apart = [&](const PlanarPose& pose) {
     const double turn_rad = std::abs(std::remainder(pose.yaw_rad - all.front().yaw_rad, 2.0 * std::numbers::pi));
     const Eigen::Vector2d shift = (pose.shift_m - all.front().shift_m) / source.cell_m;
-    return turn_rad > kApart_rad || shift.cwiseAbs().maxCoeff() >= kApartCells;
+    return turn_rad > kApartTurn_rad || shift.cwiseAbs().maxCoeff() >= kApartCells;
   };
   const auto second = std::find_if(all.begin(), all.end(), is_apart);
   if (second != all.end()) return {all.front(), *second};

@@ -9,9 +9,9 @@
 namespace cmap {
 namespace {
 
-constexpr double kPatchVoxels = 2.5;                    ///< size of a patch of surface
-constexpr double kToleranceVoxels = 0.5;                ///< patches that agree are within this of each other
-constexpr double kApartVoxels = 5.0, kApart_rad = 0.1;  ///< poses that differ by more are different answers
+constexpr double kPatchVoxels = 2.5;                          ///< size of a patch of surface
+constexpr double kToleranceVoxels = 0.5;                      ///< patches that agree are within this of each other
+constexpr double kDistinctVoxels = 5.0, kDistinct_rad = 0.1;  ///< poses that differ by more are different answers
 
 IcpOptions icp_options(const LoopOptions& options) {
   const double v = options.voxel_m;
@@ -41,7 +41,7 @@ SubmapAlignment aligned_from(const SubmapSurface& from, const SubmapSurface& to,
 }
 
 bool are_apart(const SubmapAlignment& a, const SubmapAlignment& b, const LoopOptions& options) {
-  return !difference(a.T_from_to, b.T_from_to).within({kApartVoxels * options.voxel_m, kApart_rad});
+  return !difference(a.T_from_to, b.T_from_to).within({kDistinctVoxels * options.voxel_m, kDistinct_rad});
 }
 
 void judge(SubmapAlignment& best, std::span<const SubmapAlignment> all, const LoopOptions& options) {
