@@ -185,7 +185,7 @@ TEST_F(RecordingTest, WhatMetadataSaysAndIsNotReadIsNamed) {
     folder_.write("metadata.yaml", text);
     return refusal_of(folder_.path());
   };
-  EXPECT_THAT(refusal_with(list + "compression_format: zstd\ncompression_mode: FILE\n"), HasSubstr("compression of every FILE by zstd"));
+  EXPECT_THAT(refusal_with(list + "compression_format: zstd\ncompression_mode: FILE\n"), HasSubstr("files packed by zstd as a whole"));
   EXPECT_THAT(refusal_with("relative_file_paths:\n  - gone.db3\n"), HasSubstr("lists gone.db3, which is not there"));
   EXPECT_THAT(refusal_with("relative_file_paths: []\n"), HasSubstr("lists no file"));
   EXPECT_EQ(refusal_with(list + "compression_format: \"\"\ncompression_mode: NONE\n"), "");

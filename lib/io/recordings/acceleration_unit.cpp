@@ -1,5 +1,6 @@
 #include "recordings/acceleration_unit.hpp"
 
+#include "recordings/containers/unpack_zstd.hpp"
 #include "recordings/messages/small_messages.hpp"
 
 namespace cmap {
@@ -15,12 +16,15 @@ bool has_acceleration_in_g(const std::filesystem::path& recording, std::size_t t
   double sum = 0.0;
   int n = 0;
   StoredMessage message;
+  Array<std::byte> room;
   try {
     for (; n < kSamples && store->next(message); ++n) {
-      WireReader reader(encoding, message.data);
+      WireReader reader(encoding, encoding == MessageEncoding::kCdr ? sent_message(message.data, room) : message.data);
       sum += read_imu_message(reader).specific_force_mps2.norm();
     }
-  } catch (const InputError&) {
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const Error&) {
     // It is an error where its message is due.
   }
   return n > 0 && sum / n < kBetween;

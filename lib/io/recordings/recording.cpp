@@ -6,6 +6,7 @@
 
 #include "cmap/core/error.hpp"
 #include "recordings/acceleration_unit.hpp"
+#include "recordings/containers/unpack_zstd.hpp"
 #include "recordings/messages/message_decoder.hpp"
 #include "recordings/time_references.hpp"
 #include "recordings/topic_choice.hpp"
@@ -91,15 +92,17 @@ struct Recording::State {
   /// None: its time is not known.
   std::optional<RecordedMessage> decode(Reader& reader, const StoredMessage& message) {
     try {
+      const bool is_cdr = store->topics()[message.topic].encoding() == MessageEncoding::kCdr;
+      const std::span<const std::byte> sent = is_cdr ? sent_message(message.data, room) : message.data;
       std::optional<std::int64_t> stamp_ns;
       if (reader.references) {
-        stamp_ns = reader.references->time_ns(reader.decoder.sequence(message.data));
+        stamp_ns = reader.references->time_ns(reader.decoder.sequence(sent));
         if (!stamp_ns) {
           ++reader.n_without_reference;
           return std::nullopt;
         }
       }
-      return reader.decoder.decode(message.data, stamp_ns);
+      return reader.decoder.decode(sent, stamp_ns);
     } catch (const UnsupportedError& error) {
       throw UnsupportedError(named(message) + error.what());
     } catch (const InputError& error) {
@@ -120,6 +123,7 @@ struct Recording::State {
   bool is_in_g = false;
   std::uint64_t n_wanted = 0, n_read = 0;
   double arrival_time_s = 0.0;
+  Array<std::byte> room;  ///< for messages that are packed
 };
 
 Recording::Recording(const fs::path& path, const RecordingOptions& options)

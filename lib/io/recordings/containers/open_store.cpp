@@ -58,10 +58,11 @@ std::unique_ptr<MessageStore> open_file(const fs::path& path) {
 std::unique_ptr<MessageStore> open_folder(const fs::path& folder) {
   const fs::path path = folder / "metadata.yaml";
   const Rosbag2Metadata metadata = read_rosbag2_metadata(path);
-  if (!metadata.compression.empty() && metadata.compression_mode != "NONE" && !metadata.compression_mode.empty()) {
-    throw UnsupportedError(fmt::format("{}: rosbag2's compression of every {} by {} is not read; `ros2 bag convert` undoes it, "
-                                       "and MCAP's own compression is read",
-                                       path.string(), metadata.compression_mode, metadata.compression));
+  // Messages that are packed one by one are told by how they begin.
+  if (metadata.compression_mode == "FILE" || metadata.compression_mode == "file") {
+    throw UnsupportedError(fmt::format("{}: files packed by {} as a whole are not read; `ros2 bag convert` unpacks them, and "
+                                       "MCAP's own compression is read",
+                                       path.string(), metadata.compression));
   }
   std::vector<std::unique_ptr<MessageStore>> parts;
   for (const fs::path& file : metadata.files) parts.push_back(open_file(file));

@@ -49,9 +49,13 @@ class McapStore : public MessageStore {
   }
 
  private:
-  /// Numbers of messages: as the statistics say, where they speak of known channels only; else by looking into chunks.
+  /// Numbers of messages: as the statistics say, where channels and schemas are known; else by looking into chunks.
   void count_messages() {
-    const auto is_known = [&](const auto& count) { return layout_.channels.by_id.contains(count.first); };
+    const auto is_known = [&](const auto& count) {
+      const auto channel = layout_.channels.by_id.find(count.first);
+      return channel != layout_.channels.by_id.end() &&
+             (channel->second.schema == 0 || layout_.channels.type_of_schema.contains(channel->second.schema));
+    };
     if (layout_.statistics && !layout_.statistics->empty() && std::ranges::all_of(*layout_.statistics, is_known)) {
       counts_ = *layout_.statistics;
       return;
