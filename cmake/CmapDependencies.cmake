@@ -32,7 +32,7 @@ foreach(pair "LZF_INCLUDE_DIR;liblzf-dev" "LZF_LIBRARY;liblzf-dev" "FLANN_INCLUD
 endforeach()
 
 # Libraries without which only parts of the product are missing.
-foreach(part RENDER GL IMAGES SIM CERES)
+foreach(part RENDER GL IMAGES SIM CERES SQLITE ZSTD ROSBAG)
   set(CMAP_WITH_${part} OFF)
 endforeach()
 if(CMAP_OPTIONAL_LIBRARIES)
@@ -47,6 +47,9 @@ function(cmap_print_summary)
   message(STATUS "  OpenGL       ${CMAP_WITH_GL}     apt-get install libvtk9-dev libegl-dev libgl-dev libx11-dev")
   message(STATUS "  simulator    ${CMAP_WITH_SIM}     apt-get install libembree-dev libopencv-imgcodecs-dev (Embree 3)")
   message(STATUS "  pose graphs  ${CMAP_WITH_CERES}     apt-get install libceres-dev (2.1 or later)")
+  message(STATUS "  rosbag2      ${CMAP_WITH_SQLITE}     apt-get install libsqlite3-dev (without: SQLite recordings)")
+  message(STATUS "  zstd         ${CMAP_WITH_ZSTD}     apt-get install libzstd-dev (without: compressed MCAP)")
+  message(STATUS "  ROS 1 bags   ${CMAP_WITH_ROSBAG}     apt-get install librosbag-storage-dev")
   message(STATUS "  tests        ${CMAP_BUILD_TESTS}     -DCMAP_BUILD_TESTS=ON|OFF (libgtest-dev libgmock-dev)")
   message(STATUS "  benchmarks   ${CMAP_BUILD_BENCHMARKS}    -DCMAP_BUILD_BENCHMARKS=ON|OFF (libbenchmark-dev; peers: libnanoflann-dev libpcl-dev libopen3d-dev)")
   message(STATUS "  fuzzers      ${CMAP_BUILD_FUZZERS}    -DCMAP_BUILD_FUZZERS=ON|OFF (clang)")

@@ -10,7 +10,7 @@ get_property(CMAP_PROGRAMS GLOBAL PROPERTY CMAP_PROGRAMS)
 # Headers of modules alone; without those of libraries that are not installed.
 foreach(module IN LISTS CMAP_MODULES)
   install(DIRECTORY include/cmap/${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cmap COMPONENT development
-    FILES_MATCHING PATTERN "*.hpp" PATTERN image_file.hpp EXCLUDE PATTERN figure_module.hpp EXCLUDE)
+    FILES_MATCHING PATTERN "*.hpp" PATTERN image_file.hpp EXCLUDE PATTERN "*recording.hpp" EXCLUDE PATTERN figure_module.hpp EXCLUDE)
 endforeach()
 foreach(made core/version.hpp metrics/catalog.hpp)
   get_filename_component(folder ${made} DIRECTORY)

@@ -2,7 +2,7 @@
 # Installs the Debian and Ubuntu packages that cmap is built from, as far as they are missing.
 # Usage: tools/install_dependencies.sh [--all] [--tests] [--benchmarks]
 #   (nothing)      what cmap_eval, cmap_align, cmap_compare and cmap_leaderboard need
-#   --all          also what pictures, cmap_simulate and cmap_recon need
+#   --all          also what pictures, recordings, cmap_simulate and cmap_recon need
 #   --tests        also what the tests need: GoogleTest, Python, ffmpeg, node and npm, a browser, OpenGL in software
 #   --benchmarks   also what the speed benchmarks need: Google Benchmark and the libraries compared with
 set -euo pipefail
@@ -17,7 +17,8 @@ for argument in "$@"; do
   case "$argument" in
     --all)
       packages+=(libvtk9-dev libopencv-imgproc-dev libopencv-imgcodecs-dev fonts-dejavu-core help2man
-        libegl-dev libgl-dev libx11-dev libembree-dev libceres-dev)
+        libegl-dev libgl-dev libx11-dev libembree-dev libceres-dev libsqlite3-dev libzstd-dev
+        librosbag-storage-dev)
       ;;
     --tests)
       packages+=(libgtest-dev libgmock-dev python3 python3-numpy python3-scipy python3-jsonschema libopencv-calib3d-dev ffmpeg chromium
