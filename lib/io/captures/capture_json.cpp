@@ -12,7 +12,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kStandardGravity_mps2 = 9.80665;
 
 Eigen::Matrix4d matrix_of(const Json& json, const char* name) {
   const auto refuse = [&] { throw UsageError(fmt::format("{}: a 4x4 matrix of numbers expected", name)); };

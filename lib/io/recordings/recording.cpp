@@ -15,7 +15,6 @@ namespace cmap {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kStandardGravity_mps2 = 9.80665;
 
 std::vector<RecordingTopic> listed(const std::vector<StoredTopic>& stored) {
   std::vector<RecordingTopic> topics;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 
+#include "cmap/geometry/imu_sample.hpp"
 #include "cmap/geometry/rotation.hpp"
 
 namespace cmap {
@@ -14,7 +15,7 @@ struct NavState {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();            ///< m/s, world
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();           ///< rad/s
   Eigen::Vector3d force_bias = Eigen::Vector3d::Zero();          ///< of the accelerometer, m/s^2
-  Eigen::Vector3d gravity{0.0, 0.0, -9.80665};                   ///< m/s^2, world
+  Eigen::Vector3d gravity{0.0, 0.0, -kStandardGravity_mps2};     ///< m/s^2, world
 };
 
 /// Where the errors of each part begin.

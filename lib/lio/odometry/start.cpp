@@ -13,7 +13,6 @@ constexpr int kPasses = 3;
 constexpr double kDegree = std::numbers::pi / 180.0;
 /// Of two registered scans: less is rest.
 constexpr double kRestSpeed_mps = 0.25, kRestRate_radps = 3.0 * kDegree;
-constexpr double kGravity_mps2 = 9.80665;
 
 /// A steady motion, in the body's axes at a scan's end.
 struct Twist {
@@ -95,14 +94,14 @@ Start make_start(const ScanPoints& first, std::span<const ImuSample> imu, const 
   start.covariance = start_covariance(!imu.empty(), in_motion);
   NavState& state = start.at_begin;
   const Eigen::Vector3d force =
-      imu.empty() ? Eigen::Vector3d(0.0, 0.0, kGravity_mps2) : mean_force(imu, twist.rate, first.begin_s);
+      imu.empty() ? Eigen::Vector3d(0.0, 0.0, kStandardGravity_mps2) : mean_force(imu, twist.rate, first.begin_s);
   if (T_world_start) {
     state.rotation = Eigen::Quaterniond(T_world_start->linear());
     state.position = T_world_start->translation();
   } else if (!imu.empty()) {
     state.rotation = leveled(force);
   }
-  state.gravity = -kGravity_mps2 * (state.rotation * force.normalized());
+  state.gravity = -kStandardGravity_mps2 * (state.rotation * force.normalized());
   if (imu.empty()) {
     state.gyro_bias = -twist.rate;
   } else if (!in_motion) {
