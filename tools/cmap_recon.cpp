@@ -9,7 +9,9 @@
 #include "cmap/eval/protocol.hpp"
 #include "cmap/io/output_folder.hpp"
 #include "cmap/io/point_cloud_file.hpp"
+#include "cmap/io/trajectory_file.hpp"
 #include "cmap/recon/capture_check.hpp"
+#include "cmap/recon/reconstruction_input.hpp"
 #include "cmap/recon/reconstruction_report.hpp"
 #include "cmap/report/figure_module.hpp"
 #include "cmap/report/report.hpp"
@@ -27,7 +29,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kDescription =
     "Reconstructs a metric colored map from a capture: VGGT predictions in sessions of unknown scale, LiDAR scans and\n"
-    "LiDAR-inertial poses. Pre-fusion by poses, registration of each session onto the LiDAR (Sim(3) with an expected\n"
+    "LiDAR-inertial poses (lio.tum; without one odometry runs first). Pre-fusion by poses, registration of each session onto the LiDAR (Sim(3) with an expected\n"
     "scale), pose graph, fusion. Writes map.ply, trajectory.tum (world_T_imu), sessions.json and report.json to DIR.\n"
     "A capture of your own: docs/FROM_YOUR_OWN_DATA.md.";
 
@@ -237,6 +239,14 @@ ExitCode check(const Arguments& a, const cmap::ReconstructionOptions& options) {
   return found.faults.empty() ? ExitCode::kDone : ExitCode::kInput;
 }
 
+/// The poses that the capture did not have, for the next run.
+void add_odometry(const Arguments& a, const cmap::LidarMapping& odometry, cmap::OutputFiles& files) {
+  const fs::path path = fs::path(a.output) / "lio.tum";
+  fmt::print(stderr, "note: {}: no lio.tum; its poses are those of odometry (kept as {})\n", a.capture, path.string());
+  if (!a.common.quiet) fmt::print(stderr, "{}", cmap::mapping_table(odometry));
+  files.add(path, [&](cmap::OutputFile& file) { cmap::write_tum_trajectory(odometry.imu_stamps, file); });
+}
+
 ExitCode run(const Arguments& a, const std::string& command) {
   const cmap::ExecutionScope scope({.threads = a.common.threads});
   const cmap::ReconstructionOptions options = resolve_options(a);
@@ -248,16 +258,20 @@ ExitCode run(const Arguments& a, const std::string& command) {
   check_arguments(a);
   std::optional<cmap::PointCloudFile> reference;
   if (!a.reference.empty()) reference = cmap::read_point_cloud(a.reference, {.sha256 = true});
-  const cmap::Capture capture = cmap::open_capture(a.capture, cmap::parts_needed(options, a.stop_after));
-  const cmap::FolderLock lock = make_output_folders(a, capture);
   cmap::ProgressBar progress(!a.common.quiet);
+  const auto tell = [&](std::string_view stage, double done) { progress.update(stage, done); };
+  const cmap::ReconstructionInput input =
+      cmap::open_reconstruction_input(a.capture, options, a.stop_after, {.progress = tell});
+  const cmap::Capture& capture = input.capture;
+  const cmap::FolderLock lock = make_output_folders(a, capture);
   cmap::OutputFiles files;
+  if (input.odometry) add_odometry(a, *input.odometry, files);
   cmap::ReconstructionRun how;
   how.last = a.stop_after;
   if (a.only_session) how.only_session = static_cast<std::size_t>(*a.only_session);
   how.stages = fs::path(a.output) / "stages";
   how.resume = a.resume;
-  how.execution.progress = [&](std::string_view stage, double done) { progress.update(stage, done); };
+  how.execution.progress = tell;
   std::vector<fs::path> session_maps;
   if (a.session_maps) {
     how.session_map = [&](const std::string& session, const cmap::PointCloud& map) {

@@ -6,9 +6,10 @@
 namespace cmap {
 namespace {
 
-constexpr float kLeastCosine = 0.1f;
+constexpr float kLeastSqCosine = 1e-4f, kSqDeviations = 9.0f;
 
-std::vector<Eigen::Vector3d> open_axes(std::span<const Eigen::Vector3f> directions, double least_points) {
+std::vector<Eigen::Vector3d> open_axes(std::span<const Eigen::Vector3f> directions, std::span<const float> sq_tilts,
+                                       double least_points) {
   Eigen::Matrix3f sum = Eigen::Matrix3f::Zero();
   for (const Eigen::Vector3f& d : directions) sum += d * d.transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(sum.cast<double>());
@@ -16,9 +17,9 @@ std::vector<Eigen::Vector3d> open_axes(std::span<const Eigen::Vector3f> directio
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3f axis = axes.eigenvectors().col(i).cast<float>();
     double held = 0.0;
-    for (const Eigen::Vector3f& d : directions) {
-      const float cosine = d.dot(axis);
-      if (std::abs(cosine) > kLeastCosine) held += static_cast<double>(cosine * cosine);
+    for (std::size_t k = 0; k < directions.size(); ++k) {
+      const float cosine = directions[k].dot(axis), sq_cosine = cosine * cosine;
+      if (sq_cosine > kLeastSqCosine + kSqDeviations * sq_tilts[k]) held += static_cast<double>(sq_cosine);
     }
     if (held < least_points) open.push_back(axes.eigenvectors().col(i));
   }
@@ -34,7 +35,8 @@ Eigen::Matrix3d without(const std::vector<Eigen::Vector3d>& axes) {
 }  // namespace
 
 OpenDirections open_directions(const PlaneDirections& directions, double least_points) {
-  return {open_axes(directions.normals, least_points), open_axes(directions.turns, least_points)};
+  return {open_axes(directions.normals, directions.sq_tilts, least_points),
+          open_axes(directions.turns, directions.sq_tilts, least_points)};
 }
 
 void remove_open(PlaneSystem& system, const OpenDirections& open) {

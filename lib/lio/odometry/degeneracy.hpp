@@ -11,6 +11,7 @@ namespace cmap {
 /// about (body at the end, unit).
 struct PlaneDirections {
   std::vector<Eigen::Vector3f> normals, turns;
+  std::vector<float> sq_tilts;  ///< variances of the normals' slopes, the larger of each
 };
 
 /// Directions that the surfaces leave open: along a corridor, over flat ground, one wall only.
@@ -21,8 +22,9 @@ struct OpenDirections {
 };
 
 /// A direction is open unless surfaces that stand across it count as many as `least_points`: the sum of the squared
-/// cosines of those whose cosine is above 0.1. Normals that are off by less, of a surface along the direction, are
-/// noise and hold nothing, however many they are.
+/// cosines of those whose cosine is above three standard deviations of their normal, and 0.01. Normals that are off by
+/// less, of a surface along the direction, are noise and hold nothing, however many they are; gentle slopes of fields,
+/// whose normals are well known, do hold a sensor that looks down.
 OpenDirections open_directions(const PlaneDirections& directions, double least_points);
 
 /// Takes out of the system what it says of open directions, so that the prior alone decides there (Zhang, Kaess and

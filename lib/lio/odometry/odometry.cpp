@@ -18,6 +18,11 @@ constexpr std::size_t kLeastMatches = 30;
 constexpr double kLeastShare = 0.15;
 /// So many scans without registration, one after the other, and the map begins anew.
 constexpr int kMostMissed = 10;
+/// Without an IMU what turns harder than the noise allows shows by what the scan moves the prediction by (in squared
+/// standard deviations of it, of six: chance is below 1e-4), or by matches that fall to this share of the usual; the
+/// scan is registered again, with so many times the noise.
+constexpr double kManeuver = 30.0, kManeuverMatches = 0.6;
+constexpr double kManeuverNoise[] = {8.0, 40.0};
 /// A scan goes into the map where the sensor has moved so far since the last that did, or is one of the first: seen from
 /// one place again and again, cells would be settled by the same few points.
 constexpr double kInsertStep_m = 0.1, kInsertTurn_rad = 1.0 * std::numbers::pi / 180.0;
@@ -55,6 +60,17 @@ PlaneMapOptions map_options(const OdometryOptions& o) {
   return map;
 }
 
+MotionNoise times(const MotionNoise& noise, double factor) {
+  MotionNoise larger = noise;
+  larger.gyro_bias_walk *= factor;
+  larger.free_force *= factor;
+  return larger;
+}
+
+double match_share(const ScanRegistration& found) {
+  return static_cast<double>(found.n_matches) / std::max(1.0, static_cast<double>(found.n_points));
+}
+
 double worst_deviation(const StateMatrix& covariance, int first) {
   return std::sqrt(std::max(0.0, covariance.block<3, 3>(first, first).diagonal().maxCoeff()));
 }
@@ -84,6 +100,7 @@ struct Odometry::State {
   Trajectory track;  ///< the last poses
   bool started = false;
   int n_missed = 0;
+  double usual_share = 0.0;  ///< of points with matches
   int n_inserted = 0;
   NavState at_insert;  ///< where the last scan went into the map
   double last_end_s = 0.0;
@@ -98,7 +115,16 @@ struct Odometry::State {
   void work(bool to_the_end);
   void begin(bool alone);
   void process(const ScanPoints& scan);
-  MotionTrack predict(double to_s, StateMatrix& predicted_covariance) const;
+  /// A prediction, and what registration made of it.
+  struct Attempt {
+    MotionTrack motion;
+    StateMatrix predicted_covariance;
+    ScanRegistration found;
+  };
+  Attempt attempt(const ScanPoints& scan, std::span<const std::uint32_t> chosen, double noise_factor) const;
+  Attempt registered(const ScanPoints& scan, std::span<const std::uint32_t> chosen);
+  bool is_maneuver(const Attempt& attempt) const;
+  MotionTrack predict(double to_s, const MotionNoise& with, StateMatrix& predicted_covariance) const;
   ScanOutcome outcome_of(const ScanRegistration& found);
   bool adds_to_map() const;
   void insert(const ScanPoints& scan, const MotionTrack& track);
@@ -200,13 +226,13 @@ std::vector<MotionInput> Odometry::State::inputs(double from_s, double to_s) con
   return {{.duration_s = to_s - from_s, .rate_measured = true, .force_measured = false}};
 }
 
-MotionTrack Odometry::State::predict(double to_s, StateMatrix& predicted_covariance) const {
+MotionTrack Odometry::State::predict(double to_s, const MotionNoise& with, StateMatrix& predicted_covariance) const {
   Trajectory poses = track;
   NavState state = nav;
   predicted_covariance = covariance;
   double t = poses.back().time_s;
   for (const MotionInput& input : inputs(t, to_s)) {
-    predicted_covariance = propagated_covariance(state, predicted_covariance, input, noise);
+    predicted_covariance = propagated_covariance(state, predicted_covariance, input, with);
     state = propagated(state, input);
     poses.push_back(stamped(t += input.duration_s, state));
   }
@@ -216,8 +242,7 @@ MotionTrack Odometry::State::predict(double to_s, StateMatrix& predicted_covaria
 }
 
 ScanOutcome Odometry::State::outcome_of(const ScanRegistration& found) {
-  const auto share = static_cast<double>(found.n_matches) / std::max(1.0, static_cast<double>(found.n_points));
-  if (found.n_matches >= kLeastMatches && (share >= kLeastShare || n_inserted < kFirstScans)) {
+  if (found.n_matches >= kLeastMatches && (match_share(found) >= kLeastShare || n_inserted < kFirstScans)) {
     n_missed = 0;
     return ScanOutcome::kRegistered;
   }
@@ -226,14 +251,42 @@ ScanOutcome Odometry::State::outcome_of(const ScanRegistration& found) {
   return ScanOutcome::kNewMap;
 }
 
+Odometry::State::Attempt Odometry::State::attempt(const ScanPoints& scan, std::span<const std::uint32_t> chosen,
+                                                  double noise_factor) const {
+  StateMatrix predicted_covariance;
+  MotionTrack motion = predict(scan.end_s, times(noise, noise_factor), predicted_covariance);
+  ScanRegistration found = register_scan(map, scan, chosen, motion, predicted_covariance, T_imu_lidar, options);
+  return {std::move(motion), predicted_covariance, std::move(found)};
+}
+
+bool Odometry::State::is_maneuver(const Attempt& attempt) const {
+  if (match_share(attempt.found) < kManeuverMatches * usual_share) return true;
+  const PoseVector change = difference(attempt.found.state, attempt.motion.predicted()).head<6>();
+  const PoseMatrix covariance_of_pose = attempt.predicted_covariance.topLeftCorner<6, 6>();
+  return change.dot(covariance_of_pose.llt().solve(change)) > kManeuver;
+}
+
+Odometry::State::Attempt Odometry::State::registered(const ScanPoints& scan, std::span<const std::uint32_t> chosen) {
+  Attempt best = attempt(scan, chosen, 1.0);
+  if (!options.use_imu && is_maneuver(best)) {
+    for (const double factor : kManeuverNoise) {
+      Attempt wider = attempt(scan, chosen, factor);
+      const bool explains = !is_maneuver(wider);
+      if (wider.found.n_matches >= best.found.n_matches) best = std::move(wider);
+      if (explains) break;
+    }
+  }
+  constexpr double kMemory = 0.9;
+  usual_share = n_inserted < kFirstScans ? match_share(best.found)
+                                         : kMemory * usual_share + (1.0 - kMemory) * match_share(best.found);
+  return best;
+}
+
 void Odometry::State::process(const ScanPoints& scan) {
   const double cpu_begin_s = cpu_now_s();
-  StateMatrix predicted_covariance;
-  const MotionTrack motion = predict(scan.end_s, predicted_covariance);
   const std::vector<std::uint32_t> chosen =
       thinned(scan.positions, options.scan_voxel_m, static_cast<std::size_t>(options.scan_points));
-  const ScanRegistration found =
-      register_scan(map, scan, chosen, motion, predicted_covariance, T_imu_lidar, options);
+  const auto [motion, predicted_covariance, found] = registered(scan, chosen);
   OdometryScan result;
   result.outcome = outcome_of(found);
   const bool registered = result.outcome == ScanOutcome::kRegistered;

@@ -11,8 +11,12 @@ namespace {
 
 constexpr int kPasses = 3;
 constexpr double kDegree = std::numbers::pi / 180.0;
-/// Of two registered scans: less is rest.
+/// Of two registered scans: less is rest. Sensors that never look the same way twice (rosettes) seem to move by
+/// centimeters while they stand.
 constexpr double kRestSpeed_mps = 0.25, kRestRate_radps = 3.0 * kDegree;
+/// An IMU whose rates and forces vary by less, in standard deviations, stands or glides; it stands, if registration says
+/// no more than this.
+constexpr double kQuietRate_radps = 0.6 * kDegree, kQuietForce_mps2 = 0.1, kQuietSpeed_mps = 1.0;
 
 /// A steady motion, in the body's axes at a scan's end.
 struct Twist {
@@ -66,6 +70,24 @@ Eigen::Vector3d mean_force(std::span<const ImuSample> imu, const Eigen::Vector3d
     sum += rotation_exp((sample.time_s - time_s) * rate) * sample.specific_force_mps2;
   }
   return sum / static_cast<double>(imu.size());
+}
+
+/// Root of the mean squared deviation from the mean.
+double spread(std::span<const ImuSample> imu, Eigen::Vector3d ImuSample::* member) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const ImuSample& sample : imu) sum += sample.*member;
+  const Eigen::Vector3d mean = sum / static_cast<double>(imu.size());
+  double sq_sum = 0.0;
+  for (const ImuSample& sample : imu) sq_sum += (sample.*member - mean).squaredNorm();
+  return std::sqrt(sq_sum / (3.0 * static_cast<double>(imu.size())));
+}
+
+bool is_at_rest(const Twist& twist, std::span<const ImuSample> imu) {
+  if (twist.velocity.norm() < kRestSpeed_mps && twist.rate.norm() < kRestRate_radps) return true;
+  constexpr std::size_t kEnough = 10;
+  if (imu.size() < kEnough || twist.velocity.norm() > kQuietSpeed_mps) return false;
+  return spread(imu, &ImuSample::angular_rate_radps) < kQuietRate_radps && mean_rate(imu).norm() < kRestRate_radps &&
+         spread(imu, &ImuSample::specific_force_mps2) < kQuietForce_mps2;
 }
 
 /// Upright by the force, heading along x.
@@ -126,7 +148,7 @@ Start find_start(const ScanPoints& first, const ScanPoints& second, std::span<co
   for (int pass = 0; pass < kPasses; ++pass) {
     twist = registered_twist(first, second, twist, T_imu_lidar, options);
   }
-  const bool in_motion = twist.velocity.norm() > kRestSpeed_mps || twist.rate.norm() > kRestRate_radps;
+  const bool in_motion = !is_at_rest(twist, imu);
   return make_start(first, imu, in_motion ? twist : Twist{}, in_motion, T_world_start);
 }
 
