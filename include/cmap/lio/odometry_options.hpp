@@ -37,8 +37,8 @@ struct OdometryOptions {
   double gyro_bias_walk = 1e-4;   ///< rad/s^2/sqrt(Hz)
   double force_bias_walk = 1e-3;  ///< m/s^3/sqrt(Hz)
   double free_rate = 0.15;        ///< rad/s/sqrt(Hz): of a rate that is guessed, in gaps of the IMU
-  double free_turn = 0.05;        ///< rad/s^2/sqrt(Hz): how a rate changes without an IMU
-  double free_force = 0.4;        ///< m/s^2/sqrt(Hz): how a velocity changes without an IMU
+  double free_turn = 0.7;        ///< rad/s^2/sqrt(Hz): how a rate changes without an IMU
+  double free_force = 2.0;        ///< m/s^2/sqrt(Hz): how a velocity changes without an IMU
   double max_imu_gap_s = 0.05;    ///< longer gaps are guessed over
   bool use_imu = true;
 };

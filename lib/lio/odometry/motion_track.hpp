@@ -13,16 +13,16 @@ namespace cmap {
 ///
 /// By an IMU the motion within the scan is known better than where it takes place: with tau the time before the end, a
 /// change of the state at the end changes positions by dp - tau dv and rotations by theta + tau db (the gyro's bias).
-/// Without one the pose at the end of the scan before is kept, and a change grows linearly from there to the end:
-/// velocity and rate within the scan follow from the two poses alone (otherwise scans that are sheared alike agree with
-/// each other, and the shear walks away).
+/// Without one, a change of the pose at the end says that velocity and rate were wrong, too: it counts in full there,
+/// and (1 - kRateShare) of it one scan earlier. With a share of 1 the pose at the end of the scan before would stay,
+/// and a dimension that only points early in the scan hold would be extrapolated from scan to scan, and oscillate.
 class MotionTrack {
  public:
   /// Poses by increasing time; the last is `predicted`, at the end. Times before the first pose go on backward with
   /// the end's velocity and the first pose's rotation.
-  /// @param kept_s  without an IMU, the time of the pose that is kept
-  MotionTrack(Trajectory poses, const NavState& predicted, std::optional<double> kept_s)
-      : poses_(std::move(poses)), predicted_(predicted), kept_s_(kept_s) {}
+  /// @param since_s  without an IMU, the end of the scan before
+  MotionTrack(Trajectory poses, const NavState& predicted, std::optional<double> since_s)
+      : poses_(std::move(poses)), predicted_(predicted), since_s_(since_s) {}
 
   double end_s() const { return poses_.back().time_s; }
   const NavState& predicted() const { return predicted_; }
@@ -36,7 +36,7 @@ class MotionTrack {
  private:
   Trajectory poses_;
   NavState predicted_;
-  std::optional<double> kept_s_;
+  std::optional<double> since_s_;
 };
 
 /// Poses of the LiDAR at even steps over a scan, for its points.

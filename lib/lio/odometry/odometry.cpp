@@ -18,11 +18,9 @@ constexpr std::size_t kLeastMatches = 30;
 constexpr double kLeastShare = 0.15;
 /// So many scans without registration, one after the other, and the map begins anew.
 constexpr int kMostMissed = 10;
-/// Without an IMU what turns harder than the noise allows shows by what the scan moves the prediction by (in squared
-/// standard deviations of it, of six: chance is below 1e-4), or by matches that fall to this share of the usual; the
-/// scan is registered again, with so many times the noise.
-constexpr double kManeuver = 30.0, kManeuverMatches = 0.6;
-constexpr double kManeuverNoise[] = {8.0, 40.0};
+/// Without an IMU, of what the prediction of a pose was off by, velocity and rate take this share: they follow within
+/// three scans, and an error early in a scan dies out (all of it would swing from scan to scan).
+constexpr double kRateGain = 0.7;
 /// A scan goes into the map where the sensor has moved so far since the last that did, or is one of the first: seen from
 /// one place again and again, cells would be settled by the same few points.
 constexpr double kInsertStep_m = 0.1, kInsertTurn_rad = 1.0 * std::numbers::pi / 180.0;
@@ -60,13 +58,6 @@ PlaneMapOptions map_options(const OdometryOptions& o) {
   return map;
 }
 
-MotionNoise times(const MotionNoise& noise, double factor) {
-  MotionNoise larger = noise;
-  larger.gyro_bias_walk *= factor;
-  larger.free_force *= factor;
-  return larger;
-}
-
 double match_share(const ScanRegistration& found) {
   return static_cast<double>(found.n_matches) / std::max(1.0, static_cast<double>(found.n_points));
 }
@@ -100,7 +91,6 @@ struct Odometry::State {
   Trajectory track;  ///< the last poses
   bool started = false;
   int n_missed = 0;
-  double usual_share = 0.0;  ///< of points with matches
   int n_inserted = 0;
   NavState at_insert;  ///< where the last scan went into the map
   double last_end_s = 0.0;
@@ -115,16 +105,9 @@ struct Odometry::State {
   void work(bool to_the_end);
   void begin(bool alone);
   void process(const ScanPoints& scan);
-  /// A prediction, and what registration made of it.
-  struct Attempt {
-    MotionTrack motion;
-    StateMatrix predicted_covariance;
-    ScanRegistration found;
-  };
-  Attempt attempt(const ScanPoints& scan, std::span<const std::uint32_t> chosen, double noise_factor) const;
-  Attempt registered(const ScanPoints& scan, std::span<const std::uint32_t> chosen);
-  bool is_maneuver(const Attempt& attempt) const;
-  MotionTrack predict(double to_s, const MotionNoise& with, StateMatrix& predicted_covariance) const;
+  MotionTrack predict(double to_s, StateMatrix& predicted_covariance) const;
+  /// Without an IMU: velocity and rate follow the poses, by a fixed share of what the prediction was off by.
+  void follow_motion(const MotionTrack& motion, double duration_s);
   ScanOutcome outcome_of(const ScanRegistration& found);
   bool adds_to_map() const;
   void insert(const ScanPoints& scan, const MotionTrack& track);
@@ -226,19 +209,19 @@ std::vector<MotionInput> Odometry::State::inputs(double from_s, double to_s) con
   return {{.duration_s = to_s - from_s, .rate_measured = true, .force_measured = false}};
 }
 
-MotionTrack Odometry::State::predict(double to_s, const MotionNoise& with, StateMatrix& predicted_covariance) const {
+MotionTrack Odometry::State::predict(double to_s, StateMatrix& predicted_covariance) const {
   Trajectory poses = track;
   NavState state = nav;
   predicted_covariance = covariance;
   double t = poses.back().time_s;
   for (const MotionInput& input : inputs(t, to_s)) {
-    predicted_covariance = propagated_covariance(state, predicted_covariance, input, with);
+    predicted_covariance = propagated_covariance(state, predicted_covariance, input, noise);
     state = propagated(state, input);
     poses.push_back(stamped(t += input.duration_s, state));
   }
   poses.back().time_s = to_s;
-  const std::optional<double> kept_s = options.use_imu ? std::nullopt : std::optional(track.back().time_s);
-  return MotionTrack(std::move(poses), state, kept_s);
+  const std::optional<double> since_s = options.use_imu ? std::nullopt : std::optional(track.back().time_s);
+  return MotionTrack(std::move(poses), state, since_s);
 }
 
 ScanOutcome Odometry::State::outcome_of(const ScanRegistration& found) {
@@ -251,48 +234,34 @@ ScanOutcome Odometry::State::outcome_of(const ScanRegistration& found) {
   return ScanOutcome::kNewMap;
 }
 
-Odometry::State::Attempt Odometry::State::attempt(const ScanPoints& scan, std::span<const std::uint32_t> chosen,
-                                                  double noise_factor) const {
-  StateMatrix predicted_covariance;
-  MotionTrack motion = predict(scan.end_s, times(noise, noise_factor), predicted_covariance);
-  ScanRegistration found = register_scan(map, scan, chosen, motion, predicted_covariance, T_imu_lidar, options);
-  return {std::move(motion), predicted_covariance, std::move(found)};
-}
-
-bool Odometry::State::is_maneuver(const Attempt& attempt) const {
-  if (match_share(attempt.found) < kManeuverMatches * usual_share) return true;
-  const PoseVector change = difference(attempt.found.state, attempt.motion.predicted()).head<6>();
-  const PoseMatrix covariance_of_pose = attempt.predicted_covariance.topLeftCorner<6, 6>();
-  return change.dot(covariance_of_pose.llt().solve(change)) > kManeuver;
-}
-
-Odometry::State::Attempt Odometry::State::registered(const ScanPoints& scan, std::span<const std::uint32_t> chosen) {
-  Attempt best = attempt(scan, chosen, 1.0);
-  if (!options.use_imu && is_maneuver(best)) {
-    for (const double factor : kManeuverNoise) {
-      Attempt wider = attempt(scan, chosen, factor);
-      const bool explains = !is_maneuver(wider);
-      if (wider.found.n_matches >= best.found.n_matches) best = std::move(wider);
-      if (explains) break;
-    }
-  }
-  constexpr double kMemory = 0.9;
-  usual_share = n_inserted < kFirstScans ? match_share(best.found)
-                                         : kMemory * usual_share + (1.0 - kMemory) * match_share(best.found);
-  return best;
+void Odometry::State::follow_motion(const MotionTrack& motion, double duration_s) {
+  const StateVector change = difference(nav, motion.predicted());
+  nav.velocity = motion.predicted().velocity + kRateGain / duration_s * change.segment<3>(part::kPosition);
+  nav.gyro_bias = motion.predicted().gyro_bias - kRateGain / duration_s * change.segment<3>(part::kRotation);
+  const auto reset = [&](int first, double density) {
+    covariance.middleRows<3>(first).setZero();
+    covariance.middleCols<3>(first).setZero();
+    covariance.block<3, 3>(first, first) = density * density * duration_s * Eigen::Matrix3d::Identity();
+  };
+  reset(part::kVelocity, options.free_force);
+  reset(part::kGyroBias, options.free_turn);
 }
 
 void Odometry::State::process(const ScanPoints& scan) {
   const double cpu_begin_s = cpu_now_s();
+  StateMatrix predicted_covariance;
+  const MotionTrack motion = predict(scan.end_s, predicted_covariance);
   const std::vector<std::uint32_t> chosen =
       thinned(scan.positions, options.scan_voxel_m, static_cast<std::size_t>(options.scan_points));
-  const auto [motion, predicted_covariance, found] = registered(scan, chosen);
+  const ScanRegistration found =
+      register_scan(map, scan, chosen, motion, predicted_covariance, T_imu_lidar, options);
   OdometryScan result;
   result.outcome = outcome_of(found);
   const bool registered = result.outcome == ScanOutcome::kRegistered;
   const Eigen::Vector3d before = nav.position;
   nav = registered ? found.state : motion.predicted();
   covariance = registered ? found.covariance : predicted_covariance;
+  if (registered && !options.use_imu) follow_motion(motion, scan.end_s - track.back().time_s);
   summary.path_m += (nav.position - before).norm();
   if (result.outcome == ScanOutcome::kNewMap) {
     map = PlaneMap(map_options(options));
