@@ -16,19 +16,26 @@ using ::testing::HasSubstr;
 class KittiDrive : public ::testing::Test {
  protected:
   void SetUp() override {
-    for (const char* sensor : {"velodyne_points", "image_02", "oxts"}) fs::create_directories(drive() / sensor / "data");
+    for (const char* sensor : {"velodyne_points", "image_02", "oxts"})
+      fs::create_directories(drive() / sensor / "data");
     put("../calib_imu_to_velo.txt", "calib_time: 25-May-2012 16:47:16\nR: 1 0 0 0 1 0 0 0 1\nT: -0.8 0.3 -0.8\n");
     put("../calib_velo_to_cam.txt", "R: 0 -1 0 0 0 -1 1 0 0\nT: 0 0 -0.25\ndelta_f: 0 0\n");
-    put("../calib_cam_to_cam.txt", "corner_dist: 0.1\nS_rect_02: 1242 375\nR_rect_00: 1 0 0 0 1 0 0 0 1\n"
-                                   "P_rect_02: 700 0 600 42 0 700 170 0 0 0 1 0\n");
-    put("velodyne_points/timestamps_start.txt", "2011-09-26 13:08:24.900000000\n2011-09-26 13:08:25.000000000\n2011-09-26 13:08:25.100000000\n");
-    put("velodyne_points/timestamps_end.txt", "2011-09-26 13:08:25.000000000\n2011-09-26 13:08:25.100000000\n2011-09-26 13:08:25.200000000\n");
+    put("../calib_cam_to_cam.txt",
+        "corner_dist: 0.1\nS_rect_02: 1242 375\nR_rect_00: 1 0 0 0 1 0 0 0 1\n"
+        "P_rect_02: 700 0 600 42 0 700 170 0 0 0 1 0\n");
+    put("velodyne_points/timestamps_start.txt",
+        "2011-09-26 13:08:24.900000000\n2011-09-26 13:08:25.000000000\n2011-09-26 13:08:25.100000000\n");
+    put("velodyne_points/timestamps_end.txt",
+        "2011-09-26 13:08:25.000000000\n2011-09-26 13:08:25.100000000\n2011-09-26 13:08:25.200000000\n");
     for (const char* sensor : {"image_02", "oxts"}) {
       put(std::string(sensor) + "/timestamps.txt", "2011-09-26 13:08:24.950000000\n2011-09-26 13:08:25.050000000\n");
     }
     for (const char* name : {"0000000000", "0000000002"}) {  // one is missing, as in some drives
       put(std::string("velodyne_points/data/") + name + ".bin",
-          Bytes().put(-5.0F, 0.01F, 0.0F, 0.5F, 0.0F, 5.0F, 0.0F, 0.25F, 5.0F, 0.0F, 1.0F, 0.0F, 0.0F, -5.0F, 0.0F, 1.0F, NAN, 0.0F, 0.0F, 0.0F).str());
+          Bytes()
+              .put(-5.0F, 0.01F, 0.0F, 0.5F, 0.0F, 5.0F, 0.0F, 0.25F, 5.0F, 0.0F, 1.0F, 0.0F, 0.0F, -5.0F, 0.0F, 1.0F,
+                   NAN, 0.0F, 0.0F, 0.0F)
+              .str());
     }
     std::string oxts;
     for (int i = 0; i < 30; ++i) oxts += fmt::format("{} ", i);
@@ -76,7 +83,8 @@ TEST_F(KittiDrive, PointsHaveTheTimesOfTheirDirections) {
   const LidarScan scan = read_lidar_scan(capture.scans[0].path, capture.scans[0].time_s);
   ASSERT_EQ(scan.positions.size(), 4U) << "what is no number is left out";
   // From behind over the left, the front and the right.
-  EXPECT_THAT(scan.time_s, ElementsAre(FloatNear(0.0F, 5e-5F), FloatNear(0.025F, 1e-6F), FloatNear(0.05F, 1e-6F), FloatNear(0.075F, 1e-6F)));
+  EXPECT_THAT(scan.time_s, ElementsAre(FloatNear(0.0F, 5e-5F), FloatNear(0.025F, 1e-6F), FloatNear(0.05F, 1e-6F),
+                                       FloatNear(0.075F, 1e-6F)));
   EXPECT_THAT(scan.intensity, ElementsAre(0.5F, 0.25F, 0.0F, 1.0F));
 }
 
@@ -133,7 +141,8 @@ TEST_F(RealKittiDrive, TimesAreThoseOfTheCapture) {
   const LidarScan again = read_lidar_scan(bin, file.time_s);
   ASSERT_EQ(again.time_s.size(), scan.time_s.size());
   float worst_s = 0.0F;
-  for (std::size_t i = 0; i < scan.time_s.size(); ++i) worst_s = std::max(worst_s, std::abs(again.time_s[i] - scan.time_s[i]));
+  for (std::size_t i = 0; i < scan.time_s.size(); ++i)
+    worst_s = std::max(worst_s, std::abs(again.time_s[i] - scan.time_s[i]));
   EXPECT_LT(worst_s, 2e-4F) << "a turn's end is the next one's start but for some microseconds";
 }
 

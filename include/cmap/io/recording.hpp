@@ -29,10 +29,10 @@ const EnumNames<RecordingRole>& recording_role_names();
 /// A photograph as it was recorded.
 struct RecordedImage {
   double time_s = 0.0;
-  std::string encoding;  ///< "jpeg" or "png", or what raw pixels are: rgb8, bgr8, mono8, bayer_rggb8, ...
-  int width = 0, height = 0;     ///< 0 where it is compressed
-  std::size_t row_bytes = 0;     ///< of a row of raw pixels with its padding
-  bool is_big_endian = false;    ///< of raw pixels of 16 bits
+  std::string encoding;        ///< "jpeg" or "png", or what raw pixels are: rgb8, bgr8, mono8, bayer_rggb8, ...
+  int width = 0, height = 0;   ///< 0 where it is compressed
+  std::size_t row_bytes = 0;   ///< of a row of raw pixels with its padding
+  bool is_big_endian = false;  ///< of raw pixels of 16 bits
   Array<std::byte> bytes;
 };
 
@@ -44,8 +44,8 @@ using RecordedMessage = std::variant<LidarScan, ImuSample, RecordedImage, Stampe
 /// A topic as its recording lists it.
 struct RecordingTopic {
   std::string name;
-  std::string type;                   ///< "sensor_msgs/Imu", also in ROS 2
-  std::string encoding;               ///< "ros1", "cdr"; messages of others are not understood
+  std::string type;      ///< "sensor_msgs/Imu", also in ROS 2
+  std::string encoding;  ///< "ros1", "cdr"; messages of others are not understood
   std::uint64_t n_messages = 0;
   std::optional<RecordingRole> role;  ///< what its messages can be for; none: stepped over
 };

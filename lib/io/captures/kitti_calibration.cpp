@@ -66,7 +66,8 @@ class CalibrationFile {
 };
 
 /// The rectified camera 2 is camera 0's, turned by R_rect_00 and moved by the last column of P_rect_02.
-void set_camera(const CalibrationFile& cameras, const Eigen::Isometry3d& T_camera0_lidar, CaptureCalibration& calibration) {
+void set_camera(const CalibrationFile& cameras, const Eigen::Isometry3d& T_camera0_lidar,
+                CaptureCalibration& calibration) {
   const Eigen::Matrix<double, 3, 4> P =
       Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(cameras.get("P_rect_02", 12).data());
   const std::vector<double>& size = cameras.get("S_rect_02", 2);
@@ -94,8 +95,8 @@ void set_camera(const CalibrationFile& cameras, const Eigen::Isometry3d& T_camer
 CaptureCalibration read_kitti_calibration(const fs::path& drive) {
   CaptureCalibration calibration;
   calibration.T_imu_lidar = CalibrationFile(drive, "calib_imu_to_velo.txt").transform().inverse();
-  set_camera(CalibrationFile(drive, "calib_cam_to_cam.txt"), CalibrationFile(drive, "calib_velo_to_cam.txt").transform(),
-             calibration);
+  set_camera(CalibrationFile(drive, "calib_cam_to_cam.txt"),
+             CalibrationFile(drive, "calib_velo_to_cam.txt").transform(), calibration);
   return calibration;
 }
 

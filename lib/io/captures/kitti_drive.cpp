@@ -26,7 +26,8 @@ std::vector<StampedFile> stamped_files(const fs::path& sensor, const char* times
     if (path.extension() != extension) continue;
     const std::size_t number = kitti_number(path);
     if (number >= times.size()) {
-      throw InputError(fmt::format("{}: {} has only {} times", path.string(), (sensor / times_name).string(), times.size()));
+      throw InputError(
+          fmt::format("{}: {} has only {} times", path.string(), (sensor / times_name).string(), times.size()));
     }
     if (!files.empty() && !(times[number] > files.back().time_s)) {
       throw InputError(fmt::format("{}: line {}: times do not increase", (sensor / times_name).string(), number + 1));
@@ -47,7 +48,8 @@ ImuSample read_oxts(const StampedFile& file) {
   std::vector<double> values;
   for (std::string_view token = next_token(line); !token.empty(); token = next_token(line)) {
     double value = 0.0;
-    if (!parse_number(token, value) || !std::isfinite(value)) lines.fail("'{}' is no finite number", token.substr(0, 40));
+    if (!parse_number(token, value) || !std::isfinite(value))
+      lines.fail("'{}' is no finite number", token.substr(0, 40));
     values.push_back(value);
   }
   if (values.size() < kLeast) lines.fail("{} numbers; 30 expected", values.size());

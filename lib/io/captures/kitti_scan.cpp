@@ -44,7 +44,8 @@ LidarScan read_kitti_scan(const fs::path& path, double timestamp_s) {
     const auto value = [&](std::size_t k) { return load_little<float>(bytes, place + 4 * k); };
     const Eigen::Vector3f position(value(0), value(1), value(2));
     if (!position.allFinite() || !std::isfinite(value(3))) continue;
-    const double behind = std::numbers::pi - std::atan2(static_cast<double>(position.y()), static_cast<double>(position.x()));
+    const double behind =
+        std::numbers::pi - std::atan2(static_cast<double>(position.y()), static_cast<double>(position.x()));
     scan.positions.push_back(position);
     scan.intensity.push_back(value(3));
     scan.time_s.push_back(static_cast<float>(duration_s * behind / (2.0 * std::numbers::pi)));

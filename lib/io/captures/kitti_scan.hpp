@@ -1,8 +1,8 @@
 #pragma once
 
-#include "cmap/geometry/lidar_scan.hpp"
-
 #include <filesystem>
+
+#include "cmap/geometry/lidar_scan.hpp"
 
 namespace cmap {
 

@@ -26,7 +26,8 @@ std::optional<int> whole(std::string_view text) {
 /// "2011-09-26 13:02:25.594360375"; none: it is not of this form.
 std::optional<double> seconds_of(std::string_view text) {
   constexpr std::size_t kShortest = 19;
-  if (text.size() < kShortest || text[4] != '-' || text[7] != '-' || text[10] != ' ' || text[13] != ':' || text[16] != ':') {
+  if (text.size() < kShortest || text[4] != '-' || text[7] != '-' || text[10] != ' ' || text[13] != ':' ||
+      text[16] != ':') {
     return std::nullopt;
   }
   const auto year = whole(text.substr(0, 4)), month = whole(text.substr(5, 2)), day = whole(text.substr(8, 2));

@@ -160,9 +160,10 @@ std::vector<Warning> Recording::warnings() const {
   for (std::size_t i = 0; i < state_->readers.size(); ++i) {
     const auto& reader = state_->readers[i];
     if (!reader || reader->n_without_reference == 0) continue;
-    warnings.push_back({"no_time_reference",
-                        fmt::format("{}: {} messages of {} have no time reference and were left out", state_->path.string(),
-                                    reader->n_without_reference, state_->store->topics()[i].name)});
+    warnings.push_back(
+        {"no_time_reference",
+         fmt::format("{}: {} messages of {} have no time reference and were left out", state_->path.string(),
+                     reader->n_without_reference, state_->store->topics()[i].name)});
   }
   return warnings;
 }

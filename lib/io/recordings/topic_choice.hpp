@@ -12,8 +12,8 @@ namespace cmap {
 /// The topic of each role, as its number in the store; none: not read.
 using TopicOfRole = std::array<std::optional<std::size_t>, kRecordingRoles>;
 
-/// By name where options say one, else the only one of the kind that has a message. Throws InputError that lists what is
-/// there; `name` is the recording.
+/// By name where options say one, else the only one of the kind that has a message. Throws InputError that lists what
+/// is there; `name` is the recording.
 TopicOfRole choose_topics(const std::vector<StoredTopic>& topics, const RecordingOptions& options,
                           const std::string& name);
 

@@ -27,8 +27,9 @@ class Walk {
       filled_ = source_.read_at(place, window_);
     }
     const std::uint64_t from = place - begin_;
-    return std::span(window_).first(filled_).subspan(std::min<std::uint64_t>(from, filled_),
-                                                     std::min<std::uint64_t>(n, filled_ - std::min<std::uint64_t>(from, filled_)));
+    return std::span(window_).first(filled_).subspan(
+        std::min<std::uint64_t>(from, filled_),
+        std::min<std::uint64_t>(n, filled_ - std::min<std::uint64_t>(from, filled_)));
   }
 
  private:
@@ -43,7 +44,8 @@ std::uint32_t crc_of_file(const ByteSource& source, std::uint64_t begin, std::ui
   Array<std::byte> block(std::size_t{1} << 20);
   std::uint32_t crc = 0;
   while (begin < end) {
-    const std::size_t n = source.read_at(begin, std::span(block).first(std::min<std::uint64_t>(block.size(), end - begin)));
+    const std::size_t n =
+        source.read_at(begin, std::span(block).first(std::min<std::uint64_t>(block.size(), end - begin)));
     if (n == 0) break;
     crc = crc32_of(std::span(block).first(n), crc);
     begin += n;
@@ -88,8 +90,8 @@ class LayoutReader {
       return std::nullopt;
     }
     if (record.length > source_.size() - place - kRecordStart) {
-      layout_.fault = fmt::format("truncated: the record at byte {} takes {} bytes, but the file ends at byte {}", place,
-                                  record.length, source_.size());
+      layout_.fault = fmt::format("truncated: the record at byte {} takes {} bytes, but the file ends at byte {}",
+                                  place, record.length, source_.size());
       return std::nullopt;
     }
     return record;

@@ -47,7 +47,8 @@ PointTimeUnit unit_of_name(std::string_view field) {
 /// Floating-point offsets: no scan takes 3 s, and none is as short as 3 ms.
 PointTimeUnit unit_of_size(double most) {
   constexpr double kLongest_s = 3.0;
-  for (const PointTimeUnit unit : {PointTimeUnit::kSeconds, PointTimeUnit::kMilliseconds, PointTimeUnit::kMicroseconds}) {
+  for (const PointTimeUnit unit :
+       {PointTimeUnit::kSeconds, PointTimeUnit::kMilliseconds, PointTimeUnit::kMicroseconds}) {
     if (most * seconds_of(unit) <= kLongest_s) return unit;
   }
   return PointTimeUnit::kNanoseconds;
@@ -84,9 +85,10 @@ void PointTimes::to_offsets(std::span<double> values, std::string_view field, Sc
     most = std::max(most, std::isfinite(value) ? std::abs(value) : 0.0);
   }
   if (most <= kFarthest_s) return;
-  throw InputError(fmt::format("the field '{}' holds times {:g} s from the stamp, in {}; at most {:g} s expected. Is the unit "
-                               "another (recording.point_time_unit)?",
-                               field, most, name_of(unit_, point_time_unit_names()), kFarthest_s));
+  throw InputError(
+      fmt::format("the field '{}' holds times {:g} s from the stamp, in {}; at most {:g} s expected. Is the unit "
+                  "another (recording.point_time_unit)?",
+                  field, most, name_of(unit_, point_time_unit_names()), kFarthest_s));
 }
 
 }  // namespace cmap
