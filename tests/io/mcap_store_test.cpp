@@ -1,7 +1,6 @@
 #include <lz4frame.h>
 
 #include "io/mcap_testing.hpp"
-#include "recordings/mcap/crc32.hpp"
 
 namespace cmap::testing {
 namespace mcap_store_test {
@@ -132,19 +131,6 @@ TEST(McapStore, WhatCannotBeIsNamed) {
   EXPECT_THAT(messages_in(start().record(99, "of somebody else").message(1, 5, "x").end().file()),
               ElementsAre("/a@5: x"));
   EXPECT_THAT(messages_in("not MCAP"), ElementsAre("test.mcap: is no MCAP file"));
-}
-
-TEST(Crc32, EqualsZlibsForEveryLengthAndPlace) {
-  std::string text;
-  std::uint32_t state = 1;
-  for (int i = 0; i < 1000; ++i) text += static_cast<char>((state = state * 1664525U + 1013904223U) >> 24U);
-  for (std::size_t begin : {0U, 1U, 7U}) {
-    for (std::size_t n = 0; n <= 300; ++n) {
-      ASSERT_EQ(crc32_of(bytes_of(text).subspan(begin, n)), McapText::crc(text.substr(begin, n))) << n;
-    }
-  }
-  EXPECT_EQ(crc32_of(bytes_of(text)), McapText::crc(text));
-  EXPECT_EQ(crc32_of(bytes_of(text).subspan(333), crc32_of(bytes_of(text).first(333))), McapText::crc(text));
 }
 
 }  // namespace mcap_store_test

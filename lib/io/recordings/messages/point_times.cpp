@@ -29,12 +29,21 @@ double seconds_of(PointTimeUnit unit) {
   }
 }
 
+/// The largest size of the values that are finite.
 double largest(std::span<const double> values) {
   double most = 0.0;
   for (const double value : values) {
     if (std::isfinite(value)) most = std::max(most, std::abs(value));
   }
   return most;
+}
+
+/// Whether all values, but those that are not finite, are so small. Without a maximum, each of which waits for the
+/// last.
+bool are_within(std::span<const double> values, double most) {
+  std::size_t n_beyond = 0;
+  for (const double value : values) n_beyond += std::abs(value) > most ? 1U : 0U;
+  return n_beyond == 0 || largest(values) <= most;
 }
 
 /// Whole numbers: nanoseconds, as Ouster's t and nebula's time_stamp, unless the name ends in another unit.
@@ -79,16 +88,12 @@ void PointTimes::to_offsets(std::span<double> values, std::string_view field, Sc
   if (!is_decided_) decide(values, field, type, 1e-9 * static_cast<double>(stamp_ns));
   const double unit_s = seconds_of(unit_);
   const double zero = is_clock_ ? static_cast<double>(stamp_ns) * (1e-9 / unit_s) : 0.0;
-  double most = 0.0;
-  for (double& value : values) {
-    value = (value - zero) * unit_s;
-    most = std::max(most, std::isfinite(value) ? std::abs(value) : 0.0);
-  }
-  if (most <= kFarthest_s) return;
+  for (double& value : values) value = (value - zero) * unit_s;
+  if (are_within(values, kFarthest_s)) return;
   throw InputError(
       fmt::format("the field '{}' holds times {:g} s from the stamp, in {}; at most {:g} s expected. Is the unit "
                   "another (recording.point_time_unit)?",
-                  field, most, name_of(unit_, point_time_unit_names()), kFarthest_s));
+                  field, largest(values), name_of(unit_, point_time_unit_names()), kFarthest_s));
 }
 
 }  // namespace cmap
