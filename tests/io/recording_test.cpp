@@ -182,6 +182,29 @@ TEST_F(RecordingTest, WhatIsNoneIsNamed) {
   EXPECT_THAT(refusal_of(folder_ / "missing"), HasSubstr("no such file"));
 }
 
+/// The beginning of a bag of ROS 1 whose recording did not end: no index.
+std::string unindexed_bag() {
+  Bytes fields;
+  const auto field = [&](std::string_view name, std::string_view value) {
+    fields.put(static_cast<std::uint32_t>(name.size() + 1 + value.size())).text(name).text("=").text(value);
+  };
+  field("op", "\x03");
+  field("index_pos", std::string(8, '\0'));
+  field("conn_count", std::string(4, '\0'));
+  field("chunk_count", std::string(4, '\0'));
+  const auto size = static_cast<std::uint32_t>(fields.str().size());
+  const std::uint32_t padding = 4096 - 13 - 8 - size;
+  Bytes bag("#ROSBAG V2.0\n");
+  bag.put(size).text(fields.str()).put(padding).text(std::string(padding, ' '));
+  return bag.text("what was recorded").str();
+}
+
+TEST_F(RecordingTest, ABagWithoutIndexIsNamed) {
+  const std::string said = refusal_of(folder_.write("a.bag", unindexed_bag()));
+  EXPECT_THAT(said,
+              ::testing::AnyOf(HasSubstr("a.bag: the bag is not indexed"), HasSubstr("this build of cmap cannot")));
+}
+
 TEST_F(RecordingTest, TheFilesOfARecordingAreMergedByTime) {
   folder_.write("a.mcap", start()
                               .message(1, 5, imu_message(Wire::kRos1, 0, 0, 5))

@@ -97,6 +97,8 @@ class ReadBack(unittest.TestCase):
                 capture = recording.parent / f"capture{i}"
                 image = ("/image", "/jpeg")[i % 2]
                 done = self.convert(recording, capture, f"lidar={topic}", f"image={image}", "odometry=/odometry")
+                if "this build of cmap" in done.stderr:
+                    self.skipTest(done.stderr)
                 self.assertEqual(done.returncode, 0, done.stderr)
                 self.assertEqual(done.stdout, f"{SCANS} scans, 2 images, 20 IMU samples, 3 poses\n")
                 self.check_scans(capture, truths)
