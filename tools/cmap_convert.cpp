@@ -66,6 +66,7 @@ void set_topic(cmap::RecordingOptions& options, const std::string& assignment) {
     if (equals == std::string::npos || assignment.substr(0, equals) != name || equals + 1 == assignment.size())
       continue;
     options.source(role).topic = assignment.substr(equals + 1);
+    options.source(role).want = cmap::Want::kYes;
     return;
   }
   throw cmap::UsageError(

@@ -44,6 +44,12 @@ TEST(PointTimes, TimesOfTheClockInAnyUnit) {
   EXPECT_THAT(offsets({0.0, 0.0625}, ScalarType::kFloat64, "timestamp"), are(0.0, 0.0625)) << "offsets in doubles";
 }
 
+TEST(PointTimes, WhatAMessageIsFilledUpWithHasNoTime) {
+  const std::vector<double> found = offsets({0.0, 1.6e9}, ScalarType::kFloat64, "timestamp");
+  EXPECT_TRUE(std::isnan(found[0]));
+  EXPECT_EQ(found[1], 0.0);
+}
+
 TEST(PointTimes, WhatAScanShowedStays) {
   PointTimes times;
   std::vector<double> zeros{0.0, 0.0}, first{0.0, 99500.0}, second{0.0, 2.0};

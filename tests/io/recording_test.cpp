@@ -90,6 +90,7 @@ TEST_F(RecordingTest, AccelerationsInGAreSeenByTheirLength) {
 TEST_F(RecordingTest, ATopicThatIsNotThereIsAnErrorThatListsWhatIs) {
   const McapText text = start().message(1, 5, imu_message(Wire::kRos1, 0, 0, 9.8)).end();
   RecordingOptions options;
+  EXPECT_EQ(options.source(RecordingRole::kOdometry).want, Want::kNo) << "nobody's sensor";
   options.source(RecordingRole::kLidar).topic = "/livox/lidar";
   EXPECT_THAT(read(text, options),
               ElementsAre(HasSubstr("drive.mcap: no topic /livox/lidar; there is /imu (sensor_msgs/Imu, 1 messages), "

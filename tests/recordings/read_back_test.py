@@ -126,6 +126,18 @@ class ReadBack(unittest.TestCase):
             self.assertIn(says, done.stderr)
             self.assertFalse((self.folder / "refused").exists())
 
+    def test_time_begins_at_0(self):
+        """A clock of a simulation. (In bags of ROS 1 what arrives at 0 is no message to ROS, which cannot write it either.)"""
+        for name in ("rosbags, SQLite", "mcap, ROS 1"):
+            ros, write = WRITERS[name]
+            messages = Messages(self.drive, ros)
+            first = messages.all()[0][2]
+            shifted = [(topic, kind, ns - first, message) for topic, kind, ns, message in messages.all()]
+            messages.all = lambda shifted=shifted: shifted
+            recording = write(Path(tempfile.mkdtemp(dir=self.folder)) / "drive", messages)
+            listed = subprocess.run([PROGRAM, recording, "--topics"], capture_output=True, text=True).stdout
+            self.assertIn("imu              20  /imu", listed, name)
+
     def test_several_topics_of_a_kind_must_be_told_apart(self):
         done = self.convert(self.write("", *WRITERS["mcap, ROS 2"]), self.folder / "refused")
         self.assertEqual(done.returncode, 3)

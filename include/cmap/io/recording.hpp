@@ -69,7 +69,8 @@ struct RecordingSource {
 };
 
 struct RecordingOptions {
-  std::array<RecordingSource, kRecordingRoles> sources;
+  /// Odometry only if it is asked for: it is nobody's sensor.
+  std::array<RecordingSource, kRecordingRoles> sources = {RecordingSource{}, {}, {}, {Want::kNo, "", ""}};
   /// kAuto: of whole numbers nanoseconds, unless the field's name says otherwise (_us); of floating-point numbers the
   /// unit that makes them times within a scan, or near the stamp if they are times of a clock.
   PointTimeUnit point_time_unit = PointTimeUnit::kAuto;

@@ -23,7 +23,7 @@ struct UnpackedRecording {
 };
 
 /// Makes a capture of a recording: scans, images (JPEG and PNG as they are, raw pixels as PNG), IMU by time in m/s^2,
-/// and lio.tum where a topic of odometry is named, whose poses must be world_T_imu. Left out, with warnings: scans
+/// and lio.tum where odometry is wanted, whose poses must be world_T_imu. Left out, with warnings: scans
 /// without points, what does not come after the one before. Throws as Recording does, OutputError, and InputError where
 /// there is nothing to write. Reports progress.
 UnpackedRecording unpack_recording(const std::filesystem::path& recording, const RecordingConfiguration& configuration,

@@ -17,39 +17,7 @@ namespace {
 
 constexpr double kStandardGravity_mps2 = 9.80665;
 
-std::vector<RecordingTopic> listed(const std::vector<StoredTopic>& stored) {
-  std::vector<RecordingTopic> topics;
-  for (const StoredTopic& topic : stored) {
-    const std::optional<MessageKind> kind = kind_of(topic);
-    topics.push_back({topic.name, short_type_name(topic.type), topic.encoding_name, topic.n_messages,
-                      kind ? role_of(*kind) : std::nullopt});
-  }
-  std::ranges::sort(topics, {}, &RecordingTopic::name);
-  return topics;
-}
-
 }  // namespace
-
-const EnumNames<RecordingRole>& recording_role_names() {
-  static const EnumNames<RecordingRole> names{{RecordingRole::kLidar, "lidar"},
-                                              {RecordingRole::kImu, "imu"},
-                                              {RecordingRole::kImage, "image"},
-                                              {RecordingRole::kOdometry, "odometry"}};
-  return names;
-}
-
-const EnumNames<PointTimeUnit>& point_time_unit_names() {
-  static const EnumNames<PointTimeUnit> names{{PointTimeUnit::kAuto, "auto"},
-                                              {PointTimeUnit::kSeconds, "s"},
-                                              {PointTimeUnit::kMilliseconds, "ms"},
-                                              {PointTimeUnit::kMicroseconds, "us"},
-                                              {PointTimeUnit::kNanoseconds, "ns"}};
-  return names;
-}
-
-std::vector<RecordingTopic> recording_topics(const fs::path& path) {
-  return listed(open_message_store(path)->topics());
-}
 
 struct Recording::State {
   /// What is read of a topic.
@@ -60,7 +28,7 @@ struct Recording::State {
   };
 
   State(const fs::path& recording, const RecordingOptions& options)
-      : path(recording), store(open_message_store(recording)), topics(listed(store->topics())) {
+      : path(recording), store(open_message_store(recording)), topics(listed_topics(store->topics())) {
     const std::vector<StoredTopic>& stored = store->topics();
     const TopicOfRole chosen = choose_topics(stored, options, path.string());
     std::vector<bool> is_wanted(stored.size(), false);

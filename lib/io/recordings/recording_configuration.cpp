@@ -36,6 +36,9 @@ PointTimeUnit unit_of(const Json& json) {
 void read_recording(const Json& json, RecordingOptions& options) {
   check_keys(json, "recording", {}, {"topics", "time_reference", "point_time_unit"});
   if (json.contains("topics")) read_names(json["topics"], "recording.topics", options, &RecordingSource::topic);
+  for (RecordingSource& source : options.sources) {
+    if (!source.topic.empty()) source.want = Want::kYes;
+  }
   if (json.contains("time_reference")) {
     read_names(json["time_reference"], "recording.time_reference", options, &RecordingSource::time_reference);
   }

@@ -20,6 +20,9 @@ TopicOfRole choose_topics(const std::vector<StoredTopic>& topics, const Recordin
 /// The number of a topic. Throws InputError that lists what is there.
 std::size_t topic_of_name(const std::vector<StoredTopic>& topics, const std::string& topic, const std::string& name);
 
+/// By name, with what each can be for.
+std::vector<RecordingTopic> listed_topics(const std::vector<StoredTopic>& topics);
+
 /// What is understood of a topic: by type and encoding.
 std::optional<MessageKind> kind_of(const StoredTopic& topic);
 

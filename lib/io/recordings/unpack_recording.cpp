@@ -103,9 +103,7 @@ class Unpacking {
 
 UnpackedRecording unpack_recording(const fs::path& recording, const RecordingConfiguration& configuration,
                                    const fs::path& capture, const RecordingPart& part) {
-  RecordingOptions options = configuration.options;
-  RecordingSource& odometry = options.source(RecordingRole::kOdometry);
-  if (odometry.topic.empty()) odometry.want = Want::kNo;
+  const RecordingOptions& options = configuration.options;
   Recording source(recording, options);
   Unpacking unpacking(recording, configuration.calibration, capture);
   std::optional<double> first_s;

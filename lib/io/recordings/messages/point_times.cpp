@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "cmap/core/error.hpp"
 
@@ -87,8 +88,12 @@ void PointTimes::decide(std::span<const double> values, std::string_view field, 
 void PointTimes::to_offsets(std::span<double> values, std::string_view field, ScalarType type, std::int64_t stamp_ns) {
   if (!is_decided_) decide(values, field, type, 1e-9 * static_cast<double>(stamp_ns));
   const double unit_s = seconds_of(unit_);
-  const double zero = is_clock_ ? static_cast<double>(stamp_ns) * (1e-9 / unit_s) : 0.0;
-  for (double& value : values) value = (value - zero) * unit_s;
+  const double zero = static_cast<double>(stamp_ns) * (1e-9 / unit_s);
+  if (is_clock_) {
+    // What drivers fill up a message with has no time.
+    for (double& value : values) value = value == 0.0 ? std::numeric_limits<double>::quiet_NaN() : value - zero;
+  }
+  for (double& value : values) value *= unit_s;
   if (are_within(values, kFarthest_s)) return;
   throw InputError(
       fmt::format("the field '{}' holds times {:g} s from the stamp, in {}; at most {:g} s expected. Is the unit "
