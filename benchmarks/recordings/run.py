@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Makes an MCAP recording of PointCloud2 and reads it with cmap and with rosbags: points unpacked, warm, medians of CPU seconds.
+"""Makes a recording of PointCloud2 and reads it with cmap and with rosbags: points unpacked, warm, medians of CPU seconds.
 
-usage: run.py READ_RECORDING [--gigabytes 2] [--runs 5] [--folder DIR]
-By the Python of tests/recordings/make_environment.sh; READ_RECORDING is build/dev/benchmarks/recordings/read_recording. The file
-has uncompressed chunks of a megabyte with checksums, scans of 30,000 points of 22 bytes as Velodyne's driver packs them.
+usage: run.py READ_RECORDING [--container mcap|sqlite|bag] [--gigabytes 2] [--runs 5] [--folder DIR]
+By the Python of tests/recordings/make_environment.sh; READ_RECORDING is build/dev/benchmarks/recordings/read_recording. The
+scans have 30,000 points of 22 bytes as Velodyne's driver packs them; an MCAP file has uncompressed chunks of a megabyte with checksums.
 """
 import argparse
 import json
@@ -17,7 +17,9 @@ from pathlib import Path
 import numpy as np
 from mcap.writer import CompressionType
 from mcap.writer import Writer as McapWriter
-from rosbags.rosbag2 import Reader, StoragePlugin
+from rosbags.highlevel import AnyReader
+from rosbags.rosbag1 import Writer as Bag1
+from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2 import Writer as Bag2
 from rosbags.typesys import Stores, get_typestore
 
@@ -25,7 +27,7 @@ POINTS, TOPIC, TYPE = 30_000, "/velodyne_points", "sensor_msgs/msg/PointCloud2"
 FIELDS = (("x", 0, 7), ("y", 4, 7), ("z", 8, 7), ("intensity", 12, 7), ("ring", 16, 4), ("time", 18, 7))
 POINT = np.dtype({"names": [name for name, _, _ in FIELDS], "formats": ["<f4"] * 4 + ["<u2", "<f4"],
                   "offsets": [offset for _, offset, _ in FIELDS], "itemsize": 22})
-STORE = get_typestore(Stores.ROS2_HUMBLE)
+STORE, STORE1 = get_typestore(Stores.ROS2_HUMBLE), get_typestore(Stores.ROS1_NOETIC)
 
 
 def scan(random):
@@ -37,34 +39,59 @@ def scan(random):
     return rows
 
 
-def message(rows, ns):
-    types = STORE.types
-    header = types["std_msgs/msg/Header"](types["builtin_interfaces/msg/Time"](ns // 10**9, ns % 10**9), "velodyne")
+def message(rows, ns, ros=2):
+    store = STORE if ros == 2 else STORE1
+    types = store.types
+    number = {} if ros == 2 else {"seq": 0}
+    header = types["std_msgs/msg/Header"](**number, stamp=types["builtin_interfaces/msg/Time"](ns // 10**9, ns % 10**9), frame_id="velodyne")
     fields = [types["sensor_msgs/msg/PointField"](name, offset, kind, 1) for name, offset, kind in FIELDS]
     data = rows.view(np.uint8).reshape(-1)
-    return bytes(STORE.serialize_cdr(types[TYPE](header, 1, POINTS, fields, False, 22, 22 * POINTS, data, True), TYPE))
+    cloud = types[TYPE](header, 1, POINTS, fields, False, 22, 22 * POINTS, data, True)
+    return bytes(store.serialize_cdr(cloud, TYPE) if ros == 2 else store.serialize_ros1(cloud, TYPE))
 
 
-def make(folder, gigabytes):
+def messages(gigabytes, ros=2):
+    """(time in ns, bytes) of every scan."""
+    rows = scan(np.random.default_rng(1))
+    for k in range(int(gigabytes * 1e9 / (22 * POINTS))):
+        rows["x"][k % POINTS] += 1e-3
+        ns = 1_700_000_000 * 10**9 + 100_000_000 * k
+        yield ns, message(rows, ns, ros)
+
+
+def make_with_rosbags(writer, found, store):
+    with writer:
+        connection = writer.add_connection(TOPIC, TYPE, typestore=store)
+        for ns, data in found:
+            writer.write(connection, ns, data)
+
+
+def make_mcap(bag, gigabytes):
     """A rosbag2 folder: rosbags' own metadata, and the file as mcap writes it, which has checksums."""
-    random = np.random.default_rng(1)
-    bag, rows = folder / "drive", scan(random)
     n = int(gigabytes * 1e9 / (22 * POINTS))
-    with Bag2(bag, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
-        connection = writer.add_connection(TOPIC, TYPE, typestore=STORE)
-        writer.write(connection, 1_700_000_000 * 10**9, message(rows, 1_700_000_000 * 10**9))
+    make_with_rosbags(Bag2(bag, version=9, storage_plugin=StoragePlugin.MCAP), messages(1e-3), STORE)
     definition = STORE.generate_msgdef(TYPE, ros_version=2)[0].encode()
-    with open(bag / "drive.mcap", "wb") as stream:
+    with open(bag / f"{bag.name}.mcap", "wb") as stream:
         writer = McapWriter(stream, compression=CompressionType.NONE, chunk_size=1 << 20)
         writer.start(profile="ros2")
         channel = writer.register_channel(TOPIC, "cdr", writer.register_schema(TYPE, "ros2msg", definition), {"offered_qos_profiles": ""})
-        for k in range(n):
-            rows["x"][k % POINTS] += 1e-3
-            ns = 1_700_000_000 * 10**9 + 100_000_000 * k
-            writer.add_message(channel, ns, message(rows, ns), ns, k)
+        for k, (ns, data) in enumerate(messages(gigabytes)):
+            writer.add_message(channel, ns, data, ns, k)
         writer.finish()
     metadata = (bag / "metadata.yaml").read_text()
     (bag / "metadata.yaml").write_text(metadata.replace("message_count: 1\n", f"message_count: {n}\n"))
+
+
+def make(container, folder, gigabytes):
+    bag = folder / {"mcap": "drive", "sqlite": "drive_sqlite", "bag": "drive.bag"}[container]
+    if bag.exists():
+        return bag
+    if container == "mcap":
+        make_mcap(bag, gigabytes)
+    elif container == "sqlite":
+        make_with_rosbags(Bag2(bag, version=9), messages(gigabytes), STORE)
+    else:
+        make_with_rosbags(Bag1(bag), messages(gigabytes, ros=1), STORE1)
     return bag
 
 
@@ -76,20 +103,20 @@ def peak_mb():
 
 def read_with_rosbags(bag):
     """What read_recording does: every point's values in arrays of their own, points that are none left out."""
-    messages, points, total = 0, 0, 0.0
-    with Reader(bag) as reader:
-        for _, _, raw in reader.messages():
-            cloud = STORE.deserialize_cdr(raw, TYPE)
+    n, points, total = 0, 0, 0.0
+    with AnyReader([bag]) as reader:
+        for connection, _, raw in reader.messages():
+            cloud = reader.deserialize(raw, connection.msgtype)
             rows = cloud.data.view(POINT)
             xyz = np.stack([rows["x"], rows["y"], rows["z"]], 1)
             finite = np.isfinite(xyz).all(1)
             columns = [np.ascontiguousarray(rows[name]) for name in ("intensity", "ring", "time")]
             if not finite.all():
                 xyz, columns = xyz[finite], [column[finite] for column in columns]
-            messages, points = messages + 1, points + len(xyz)
+            n, points = n + 1, points + len(xyz)
             total += float(xyz[-1, 0]) + float(columns[2][-1])
     usage = resource.getrusage(resource.RUSAGE_SELF)
-    print(json.dumps({"messages": messages, "points": points, "sum": total, "cpu_s": usage.ru_utime + usage.ru_stime,
+    print(json.dumps({"messages": n, "points": points, "sum": total, "cpu_s": usage.ru_utime + usage.ru_stime,
                       "peak_mb": peak_mb()}))
 
 
@@ -100,14 +127,15 @@ def run(command):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=Path, metavar="READ_RECORDING")
+    parser.add_argument("--container", choices=("mcap", "sqlite", "bag"), default="mcap")
     parser.add_argument("--gigabytes", type=float, default=2.0)
     parser.add_argument("--runs", type=int, default=5)
     parser.add_argument("--folder", type=Path, help="where the recording is made, and stays")
     args = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="cmap-recordings-") as temporary:
         folder = args.folder or Path(temporary)
-        bag = folder / "drive" if (folder / "drive").exists() else make(folder, args.gigabytes)
-        size_mb = (bag / "drive.mcap").stat().st_size / 1e6
+        bag = make(args.container, folder, args.gigabytes)
+        size_mb = sum(path.stat().st_size for path in ([bag] if bag.is_file() else bag.iterdir())) / 1e6
         commands = {"cmap": [args.program, bag], "rosbags 0.11.9": [sys.executable, __file__, "--read", bag]}
         found = {name: [] for name in commands}
         for k in range(args.runs + 1):  # in turn; the first is to warm up
