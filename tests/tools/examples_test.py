@@ -442,6 +442,7 @@ class Examples(unittest.TestCase):
             examples = examples_of_help(program)
             self.assertGreater(len(examples), 0, program)
             folder = self.work_folder()
+            write_recording(folder)  # no recording is in the repository
             for example in examples:
                 with self.subTest(example.command):
                     for link in ("data_samples", "benchmarks"):
