@@ -88,6 +88,30 @@ TEST_F(KittiDrive, PointsHaveTheTimesOfTheirDirections) {
   EXPECT_THAT(scan.intensity, ElementsAre(0.5F, 0.25F, 0.0F, 1.0F));
 }
 
+TEST_F(KittiDrive, OneThatIsNotSynchronizedHasScansAsTextAndImagesAsTheyWereTaken) {
+  const fs::path extract = drive().parent_path() / "drive_extract";
+  fs::rename(drive(), extract);
+  fs::create_directory(drive());  // a place for the calibration's name
+  put("../calib_cam_to_cam.txt",
+      "S_02: 1392 512\nK_02: 960 0 696 0 950 224 0 0 1\nD_02: -0.37 0.2 0.001 0.002 -0.07\n"
+      "R_02: 1 0 0 0 1 0 0 0 1\nT_02: 0.06 0 0\n");
+  fs::remove(extract / "velodyne_points/data/0000000002.bin");
+  fs::remove(extract / "velodyne_points/data/0000000000.bin");
+  put("../drive_extract/velodyne_points/data/0000000001.txt", "5.0 0.0 1.0 0.5\n0 -5 0 1\n");
+  const Capture capture = open_capture(extract);
+  ASSERT_EQ(capture.scans.size(), 1U);
+  const LidarScan scan = read_lidar_scan(capture.scans[0].path, capture.scans[0].time_s);
+  EXPECT_THAT(scan.positions, ElementsAre(Eigen::Vector3f(5, 0, 1), Eigen::Vector3f(0, -5, 0)));
+  EXPECT_THAT(scan.time_s, ElementsAre(FloatNear(0.05F, 1e-6F), FloatNear(0.075F, 1e-6F)));
+  EXPECT_EQ(capture.calibration.camera.width, 1392);
+  EXPECT_EQ(capture.calibration.camera.fy, 950);
+  EXPECT_EQ(capture.calibration.camera.distortion.size(), 5U);
+  const Eigen::Vector3d seen = capture.calibration.T_lidar_camera.inverse() * Eigen::Vector3d(10, 0, 0);
+  EXPECT_TRUE(seen.isApprox(Eigen::Vector3d(0.06, 0, 9.75), 1e-12)) << seen;
+  put("../drive_extract/velodyne_points/data/0000000001.txt", "5.0 0.0 1.0\n");
+  EXPECT_THROW(read_lidar_scan(capture.scans[0].path, capture.scans[0].time_s), InputError);
+}
+
 TEST_F(KittiDrive, WhatIsNotAskedForNeedNotBeThere) {
   fs::remove_all(drive() / "image_02");
   EXPECT_THAT(refusal(), HasSubstr("image_02/timestamps.txt: no such file"));

@@ -65,29 +65,42 @@ class CalibrationFile {
   std::map<std::string, std::vector<double>> values_;
 };
 
-/// The rectified camera 2 is camera 0's, turned by R_rect_00 and moved by the last column of P_rect_02.
-void set_camera(const CalibrationFile& cameras, const Eigen::Isometry3d& T_camera0_lidar,
-                CaptureCalibration& calibration) {
-  const Eigen::Matrix<double, 3, 4> P =
-      Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(cameras.get("P_rect_02", 12).data());
-  const std::vector<double>& size = cameras.get("S_rect_02", 2);
-  CameraModel& camera = calibration.camera;
+void set_camera(const CalibrationFile& cameras, const char* size_key, double fx, double fy, double cx, double cy,
+                CameraModel& camera) {
+  const std::vector<double>& size = cameras.get(size_key, 2);
   camera.projection = CameraProjection::kPinhole;
   camera.width = static_cast<int>(std::clamp(size[0], 0.0, 1e6));
   camera.height = static_cast<int>(std::clamp(size[1], 0.0, 1e6));
-  camera.fx = P(0, 0);
-  camera.fy = P(1, 1);
-  camera.cx = P(0, 2);
-  camera.cy = P(1, 2);
+  camera.fx = fx;
+  camera.fy = fy;
+  camera.cx = cx;
+  camera.cy = cy;
   try {
     check(camera);
   } catch (const UsageError& error) {
-    cameras.fail(fmt::format("P_rect_02, S_rect_02: {}", error.what()));
+    cameras.fail(fmt::format("{}: {}", size_key, error.what()));
   }
-  Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
-  T_camera_lidar.linear() = cameras.rotation("R_rect_00");
-  T_camera_lidar = Eigen::Translation3d(P.leftCols<3>().inverse() * P.col(3)) * T_camera_lidar * T_camera0_lidar;
-  calibration.T_lidar_camera = T_camera_lidar.inverse();
+}
+
+/// The rectified camera 2 is camera 0, turned by R_rect_00 and moved by the last column of P_rect_02. T_camera_camera0.
+Eigen::Isometry3d rectified_camera(const CalibrationFile& cameras, CameraModel& camera) {
+  const Eigen::Matrix<double, 3, 4> P =
+      Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(cameras.get("P_rect_02", 12).data());
+  set_camera(cameras, "S_rect_02", P(0, 0), P(1, 1), P(0, 2), P(1, 2), camera);
+  Eigen::Isometry3d turned = Eigen::Isometry3d::Identity();
+  turned.linear() = cameras.rotation("R_rect_00");
+  return Eigen::Translation3d(P.leftCols<3>().inverse() * P.col(3)) * turned;
+}
+
+/// Camera 2 as it photographs.
+Eigen::Isometry3d raw_camera(const CalibrationFile& cameras, CameraModel& camera) {
+  const std::vector<double>& K = cameras.get("K_02", 9);
+  set_camera(cameras, "S_02", K[0], K[4], K[2], K[5], camera);
+  camera.distortion = cameras.get("D_02", 5);
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = cameras.rotation("R_02");
+  T.translation() = Eigen::Vector3d(cameras.get("T_02", 3).data());
+  return T;
 }
 
 }  // namespace
@@ -95,8 +108,12 @@ void set_camera(const CalibrationFile& cameras, const Eigen::Isometry3d& T_camer
 CaptureCalibration read_kitti_calibration(const fs::path& drive) {
   CaptureCalibration calibration;
   calibration.T_imu_lidar = CalibrationFile(drive, "calib_imu_to_velo.txt").transform().inverse();
-  set_camera(CalibrationFile(drive, "calib_cam_to_cam.txt"),
-             CalibrationFile(drive, "calib_velo_to_cam.txt").transform(), calibration);
+  const CalibrationFile cameras(drive, "calib_cam_to_cam.txt");
+  const bool is_raw = place_of_file(drive).filename().string().ends_with("_extract");
+  const Eigen::Isometry3d T_camera_camera0 =
+      is_raw ? raw_camera(cameras, calibration.camera) : rectified_camera(cameras, calibration.camera);
+  const Eigen::Isometry3d T_camera0_lidar = CalibrationFile(drive, "calib_velo_to_cam.txt").transform();
+  calibration.T_lidar_camera = (T_camera_camera0 * T_camera0_lidar).inverse();
   return calibration;
 }
 

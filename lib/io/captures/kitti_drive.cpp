@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <initializer_list>
 
 #include "captures/capture_part.hpp"
 #include "captures/kitti_calibration.hpp"
@@ -17,13 +18,14 @@ namespace fs = std::filesystem;
 namespace {
 
 /// The files of a sensor, each with the time of its number; files may be missing, as some are in published drives.
-std::vector<StampedFile> stamped_files(const fs::path& sensor, const char* times_name, std::string_view extension) {
+std::vector<StampedFile> stamped_files(const fs::path& sensor, const char* times_name,
+                                       std::initializer_list<std::string_view> extensions) {
   const std::vector<double> times = read_kitti_times(sensor / times_name);
   std::vector<StampedFile> files;
   std::vector<fs::path> paths = paths_in(sensor / "data");
   std::sort(paths.begin(), paths.end());
   for (const fs::path& path : paths) {
-    if (path.extension() != extension) continue;
+    if (std::ranges::find(extensions, path.extension().string()) == extensions.end()) continue;
     const std::size_t number = kitti_number(path);
     if (number >= times.size()) {
       throw InputError(
@@ -34,7 +36,8 @@ std::vector<StampedFile> stamped_files(const fs::path& sensor, const char* times
     }
     files.push_back({times[number], path});
   }
-  if (files.empty()) throw InputError(fmt::format("{}: holds no {} file", (sensor / "data").string(), extension));
+  if (files.empty())
+    throw InputError(fmt::format("{}: holds no {} file", (sensor / "data").string(), fmt::join(extensions, " or ")));
   return files;
 }
 
@@ -58,7 +61,7 @@ ImuSample read_oxts(const StampedFile& file) {
 
 std::vector<ImuSample> read_imu(const fs::path& oxts) {
   std::vector<ImuSample> samples;
-  for (const StampedFile& file : stamped_files(oxts, "timestamps.txt", ".txt")) samples.push_back(read_oxts(file));
+  for (const StampedFile& file : stamped_files(oxts, "timestamps.txt", {".txt"})) samples.push_back(read_oxts(file));
   return samples;
 }
 
@@ -73,9 +76,9 @@ Capture open_kitti_drive(const fs::path& folder, const CaptureParts& parts, cons
   capture.folder = folder;
   faults.attempt([&] { capture.calibration = read_kitti_calibration(folder); });
   read_part(capture, "image_02", parts.images, faults,
-            [&](const Faults&) { capture.images = stamped_files(folder / "image_02", "timestamps.txt", ".png"); });
+            [&](const Faults&) { capture.images = stamped_files(folder / "image_02", "timestamps.txt", {".png"}); });
   read_part(capture, "velodyne_points", parts.scans, faults, [&](const Faults&) {
-    capture.scans = stamped_files(folder / "velodyne_points", "timestamps_start.txt", ".bin");
+    capture.scans = stamped_files(folder / "velodyne_points", "timestamps_start.txt", {".bin", ".txt"});
   });
   read_part(capture, "oxts", parts.imu, faults, [&](const Faults&) { capture.imu = read_imu(folder / "oxts"); });
   return capture;

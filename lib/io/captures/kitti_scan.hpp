@@ -6,7 +6,8 @@
 
 namespace cmap {
 
-/// Whether a scan is one of a drive of KITTI's raw data: velodyne_points/data/NUMBER.bin.
+/// Whether a scan is one of a drive of KITTI's raw data: velodyne_points/data/NUMBER.bin, or .txt in drives
+/// that are not synchronized.
 bool is_kitti_scan(const std::filesystem::path& path);
 
 /// x y z intensity of each point, and its time by the direction it lies in, as none is recorded: seen from above the
