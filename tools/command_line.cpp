@@ -112,9 +112,9 @@ template Argument CommandLine::add(const char*, std::string&, const char*, const
 template Argument CommandLine::add(const char*, int&, const char*, const char*);
 template Argument CommandLine::add(const char*, double&, const char*, const char*);
 template Argument CommandLine::add(const char*, std::optional<int>&, const char*, const char*);
+template Argument CommandLine::add(const char*, std::optional<double>&, const char*, const char*);
 template Argument CommandLine::add(const char*, std::vector<std::string>&, const char*, const char*);
 template Argument CommandLine::add(const char*, std::vector<double>&, const char*, const char*);
-template Argument CommandLine::add(const char*, std::optional<double>&, const char*, const char*);
 template Argument CommandLine::add(const char*, std::vector<std::uint8_t>&, const char*, const char*);
 
 void CommandLine::add_flag(const char* name, bool& value, const char* help) { app_->add_flag(name, value, help); }

@@ -6,6 +6,7 @@
 
 #include "cmap/core/error.hpp"
 #include "cmap/render/figure.hpp"
+#include "colored_points.hpp"
 
 namespace cmap {
 namespace {
@@ -21,24 +22,6 @@ constexpr std::array<Rgb8, 9> kSessionColors{{{51, 34, 136},
                                               {153, 153, 51},
                                               {170, 68, 153}}};
 constexpr Rgb8 kCamera{20, 20, 20}, kLink{255, 30, 30};
-
-/// Points and their colors, before they are sorted.
-struct ColoredPoints {
-  PointCloud cloud;
-  Array<Rgb8> colors;
-
-  void add(const Eigen::Vector3d& world, Rgb8 color) {
-    if (cloud.positions.empty()) cloud.origin = choose_origin({world, world});
-    cloud.positions.push_back((world - cloud.origin).cast<float>());
-    colors.push_back(color);
-  }
-  /// Dots every 10 cm, so high above that nothing hides them from above.
-  void add_line(const Eigen::Vector3d& from, const Eigen::Vector3d& to, Rgb8 color) {
-    constexpr double kStep_m = 0.1, kAbove_m = 100.0;
-    const auto n = static_cast<int>((to - from).norm() / kStep_m) + 1;
-    for (int i = 0; i <= n; ++i) add(from + (to - from) * i / n + Eigen::Vector3d(0, 0, kAbove_m), color);
-  }
-};
 
 ColoredPoints points_of(const Reconstruction& r, const std::vector<PlacedSession>& placed) {
   ColoredPoints points;
@@ -85,16 +68,9 @@ Image draw_reconstruction(const Reconstruction& r) {
   std::vector<PointBlocks> blocks(panels.size());
   std::vector<Layer> layers;
   for (std::size_t p = 0; p < panels.size(); ++p) {
-    const ColoredPoints points = points_of(r, *panels[p].placed);
-    blocks[p] = sort_points(points.cloud);
-    Layer& layer = layers.emplace_back();
+    Layer& layer = layers.emplace_back(points_of(r, *panels[p].placed).layer(blocks[p]));
     layer.title = panels[p].title;
     layer.caption = panels[p].caption;
-    layer.points = &blocks[p];
-    layer.colors.resize(blocks[p].size);
-    for (std::size_t slot = 0; slot < blocks[p].size; ++slot) {
-      layer.colors[slot] = points.colors[blocks[p].original_index[slot]];
-    }
     layer.classes = classes_of(r);
   }
   FigureOptions options;

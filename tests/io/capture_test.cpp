@@ -22,7 +22,7 @@ TEST(Capture, OpensAHandMadeOne) {
   EXPECT_EQ(calibration.camera.distortion, (std::vector<double>{0.1, 0, 0, 0}));
   EXPECT_EQ(calibration.T_imu_lidar * Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(-1.5, 1, 2.75));
   EXPECT_EQ(calibration.T_lidar_camera * Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(3, -1, -2));
-  EXPECT_EQ(calibration.T_world_imu_start * Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(3, 7, 10));
+  EXPECT_EQ(*calibration.T_world_imu_start * Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(3, 7, 10));
   ASSERT_EQ(capture.images.size(), 2U);
   EXPECT_EQ(capture.images[1].time_s, 3.0);
   EXPECT_EQ(capture.images[1].path, folder / "images/b.jpg");

@@ -45,6 +45,15 @@ TEST(RecordingConfiguration, WhatIsNotSaidIsSeen) {
   EXPECT_EQ(rig.options.point_time_unit, PointTimeUnit::kAuto);
 }
 
+TEST(RecordingConfiguration, ARigOfALidarAloneNeedsNoCamera) {
+  const TempFolder folder;
+  const fs::path path =
+      folder.write("rig.json", R"({"version": 1, "T_imu_lidar": [[1,0,0,0],[0,1,0,0],[0,0,1,0.5],[0,0,0,1]],
+                      "recording": {"topics": {"lidar": "/l"}}})");
+  EXPECT_EQ(read_recording_configuration(path, false).calibration.T_imu_lidar.translation().z(), 0.5);
+  EXPECT_THROW(read_recording_configuration(path), InputError);
+}
+
 TEST(RecordingConfiguration, WhatIsWrongIsNamed) {
   EXPECT_THAT(refusal_with(R"(, "recording": {"topic": {}})"), HasSubstr("rig.json: unknown key \"recording.topic\""));
   EXPECT_THAT(refusal_with(R"(, "recording": {"topics": {"camera": "/c"}})"), HasSubstr("recording.topics.camera"));

@@ -4,6 +4,8 @@
 
 namespace cmap {
 
+inline constexpr double kStandardGravity_mps2 = 9.80665;
+
 /// One measurement of an IMU, in its own frame.
 struct ImuSample {
   double time_s = 0.0;

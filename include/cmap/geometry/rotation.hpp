@@ -53,4 +53,14 @@ inline Eigen::Matrix3d inverse_right_jacobian(const Eigen::Vector3d& phi) {
   return Eigen::Matrix3d::Identity() + 0.5 * cross + factor * cross * cross;
 }
 
+/// Exp(phi + d) = Exp(phi) Exp(J d) to first order.
+inline Eigen::Matrix3d right_jacobian(const Eigen::Vector3d& phi) {
+  const double sq_angle = phi.squaredNorm();
+  const double angle = std::sqrt(sq_angle);
+  const double first = sq_angle < 1e-6 ? 0.5 - sq_angle / 24.0 : (1.0 - std::cos(angle)) / sq_angle;
+  const double second = sq_angle < 1e-6 ? 1.0 / 6.0 - sq_angle / 120.0 : (angle - std::sin(angle)) / (sq_angle * angle);
+  const Eigen::Matrix3d cross = cross_matrix(phi);
+  return Eigen::Matrix3d::Identity() - first * cross + second * cross * cross;
+}
+
 }  // namespace cmap

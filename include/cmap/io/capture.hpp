@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,7 +30,7 @@ struct CaptureCalibration {
   CameraModel camera;
   Eigen::Isometry3d T_imu_lidar = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d T_lidar_camera = Eigen::Isometry3d::Identity();
-  Eigen::Isometry3d T_world_imu_start = Eigen::Isometry3d::Identity();  ///< where odometry begins
+  std::optional<Eigen::Isometry3d> T_world_imu_start;  ///< where odometry begins; none: see Odometry
   /// Of images and of sessions' frames: recorded time + offset = time in the clock of the LiDAR.
   double image_time_offset_s = 0.0;
   double imu_time_offset_s = 0.0;  ///< likewise
@@ -60,11 +61,12 @@ struct CaptureParts {
   Want images = Want::kYes, scans = Want::kYes, imu = Want::kYes, sessions = Want::kYes;
 };
 
-/// Opens a capture, or a drive of KITTI's raw data as one (FORMATS, "KITTI drives"). Rotations that deviate from one
-/// (largest entry of R^T R - I) are projected to SO(3), with a warning above 1e-3. Throws InputError naming file, place
-/// and reason: a file that is missing (images and scans of the tables too), an unknown or missing key, a matrix that is
-/// no rotation and translation (det R <= 0, or beyond 0.2), times that do not increase, one frames.csv beside several
-/// NPZ files. With a list of faults it goes on after each of these, with what could be read. Thread-safe.
+/// Opens a capture, or a drive of KITTI's raw data as one (FORMATS, "KITTI drives"); one whose images and sessions are
+/// not wanted needs no camera. Rotations that deviate from one (largest entry of R^T R - I) are projected to SO(3), with
+/// a warning above 1e-3. Throws InputError naming file, place and reason: a file that is missing (images and scans of
+/// the tables too), an unknown or missing key, a matrix that is no rotation and translation (det R <= 0, or beyond 0.2),
+/// times that do not increase, one frames.csv beside several NPZ files. With a list of faults it goes on after each of
+/// these, with what could be read. Thread-safe.
 Capture open_capture(const std::filesystem::path& folder, const CaptureParts& parts = {}, const Faults& faults = {});
 
 /// The predictions of a session (read_session_predictions()), its frames' times in the clock of the LiDAR.

@@ -88,4 +88,7 @@ void write_ply(OutputFile& file, const PointCloud& cloud, std::span<const PointF
 /// The same as PCD v0.7; colors become packed 8-bit `rgb` (float32 bits), as PCL writes them.
 void write_pcd(const std::filesystem::path& path, const PointCloud& cloud, PcdEncoding encoding = PcdEncoding::kBinary);
 
+/// The same into a file that the caller commits.
+void write_pcd(OutputFile& file, const PointCloud& cloud, PcdEncoding encoding = PcdEncoding::kBinary);
+
 }  // namespace cmap

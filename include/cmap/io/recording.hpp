@@ -130,7 +130,7 @@ struct RecordingConfiguration {
   std::vector<Warning> warnings;
 };
 
-/// Throws InputError naming file, key and reason.
-RecordingConfiguration read_recording_configuration(const std::filesystem::path& path);
+/// Throws InputError naming file, key and reason. Who needs no camera reads a rig of a LiDAR alone.
+RecordingConfiguration read_recording_configuration(const std::filesystem::path& path, bool needs_camera = true);
 
 }  // namespace cmap

@@ -5,7 +5,7 @@
 
 #include "cmap/geometry/point_cloud.hpp"
 #include "cmap/geometry/similarity.hpp"
-#include "cmap/recon/lidar_map.hpp"
+#include "cmap/lio/lidar_map.hpp"
 #include "cmap/recon/session_link.hpp"
 #include "cmap/recon/session_points.hpp"
 

@@ -43,20 +43,34 @@ std::vector<StampedFile> read_file_table(const fs::path& folder, const char* nam
   return files;
 }
 
-std::vector<ImuSample> read_imu(const fs::path& path, double unit_mps2, double offset_s, const Faults& faults) {
+/// Drivers repeat stamps and hand samples on out of order: they are sorted, and of one time the first counts.
+void sort_samples(std::vector<ImuSample>& samples, const std::string& source, std::vector<Warning>& warnings) {
+  const auto is_earlier = [](const ImuSample& a, const ImuSample& b) { return a.time_s < b.time_s; };
+  const auto is_as_late = [](const ImuSample& a, const ImuSample& b) { return !(a.time_s < b.time_s); };
+  if (std::ranges::adjacent_find(samples, is_as_late) == samples.end()) return;
+  const bool in_order = std::ranges::is_sorted(samples, is_earlier);
+  std::ranges::stable_sort(samples, is_earlier);
+  const std::size_t n = samples.size();
+  samples.erase(std::ranges::unique(samples, is_as_late).begin(), samples.end());
+  warnings.push_back({"imu_times", fmt::format("{}: {}{} of {} rows repeat the time of another and are left out", source,
+                                               in_order ? "" : "rows were out of order and are sorted; ",
+                                               n - samples.size(), n)});
+}
+
+std::vector<ImuSample> read_imu(const fs::path& path, double unit_mps2, double offset_s, const Faults& faults,
+                                std::vector<Warning>& warnings) {
   ByteSource source(path);
   CsvTable table(source, {"timestamp_s", "gx", "gy", "gz", "ax", "ay", "az"});
-  IncreasingTimes times;
   std::vector<ImuSample> samples;
   bool is_empty = true;
   table.for_each_row(faults, [&] {
     is_empty = false;
-    times.add(table.lines(), table.number(0));
     const Eigen::Vector3d rate(table.number(1), table.number(2), table.number(3));
     const Eigen::Vector3d force(table.number(4), table.number(5), table.number(6));
     samples.push_back({table.number(0) + offset_s, rate, unit_mps2 * force});
   });
   if (is_empty) source.fail("holds no measurement");
+  sort_samples(samples, path.string(), warnings);
   return samples;
 }
 
@@ -110,7 +124,8 @@ Capture open_capture(const fs::path& folder, const CaptureParts& parts, const Fa
   CaptureDescription description;
   faults.attempt([&] {
     const fs::path path = folder / "capture.json";
-    description = parse_capture_json(read_text_file(path), path.string(), faults);
+    const bool needs_camera = parts.images == Want::kYes || parts.sessions == Want::kYes;
+    description = parse_capture_json(read_text_file(path), path.string(), faults, needs_camera);
   });
   capture.calibration = description.calibration;
   capture.warnings = std::move(description.warnings);
@@ -122,7 +137,8 @@ Capture open_capture(const fs::path& folder, const CaptureParts& parts, const Fa
             [&](const Faults& found) { capture.scans = read_file_table(folder, "lidar.csv", 0.0, found); });
   const fs::path imu = folder / "imu.csv", lio = folder / "lio.tum", predictions = folder / "predictions";
   read_part(capture, "imu.csv", is_there(imu) ? parts.imu : Want::kNo, faults, [&](const Faults& found) {
-    capture.imu = read_imu(imu, description.acceleration_unit_mps2, calibration.imu_time_offset_s, found);
+    capture.imu = read_imu(imu, description.acceleration_unit_mps2, calibration.imu_time_offset_s, found,
+                           capture.warnings);
   });
   if (is_there(lio)) faults.attempt([&] { capture.lio = read_lio(lio, capture.warnings); });
   if (parts.sessions == Want::kNo) return capture;

@@ -12,7 +12,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kStandardGravity_mps2 = 9.80665;
 
 Eigen::Matrix4d matrix_of(const Json& json, const char* name) {
   const auto refuse = [&] { throw UsageError(fmt::format("{}: a 4x4 matrix of numbers expected", name)); };
@@ -102,7 +101,8 @@ Json matrix_json(const Eigen::Isometry3d& transform) {
 
 }  // namespace
 
-CaptureDescription parse_capture_json(const std::string& text, const std::string& source, const Faults& faults) {
+CaptureDescription parse_capture_json(const std::string& text, const std::string& source, const Faults& faults,
+                                      bool needs_camera) {
   CaptureDescription description;
   CaptureCalibration& calibration = description.calibration;
   Json parsed;
@@ -118,8 +118,13 @@ CaptureDescription parse_capture_json(const std::string& text, const std::string
     });
   };
   part([&](const Json& json) {
-    check_keys(json, "", {"version", "camera", "T_imu_lidar", "T_lidar_camera"},
-               {"imu", "time_offset", "T_world_imu_start"});
+    if (needs_camera) {
+      check_keys(json, "", {"version", "camera", "T_imu_lidar", "T_lidar_camera"},
+                 {"imu", "time_offset", "T_world_imu_start"});
+    } else {
+      check_keys(json, "", {"version", "T_imu_lidar"},
+                 {"camera", "T_lidar_camera", "imu", "time_offset", "T_world_imu_start"});
+    }
   });
   if (!parsed.is_object()) return description;
   part_of("version", [](const Json& json) {
@@ -130,11 +135,13 @@ CaptureDescription parse_capture_json(const std::string& text, const std::string
     const std::string doubt = principal_point_doubt(camera.cx, camera.cy, camera.width, camera.height);
     if (!doubt.empty()) description.warnings.push_back({"camera_of_another_size", source + ": camera.K: " + doubt});
   });
-  for (auto [key, T] :
-       {std::pair("T_imu_lidar", &calibration.T_imu_lidar), std::pair("T_lidar_camera", &calibration.T_lidar_camera),
-        std::pair("T_world_imu_start", &calibration.T_world_imu_start)}) {
+  for (auto [key, T] : {std::pair("T_imu_lidar", &calibration.T_imu_lidar),
+                        std::pair("T_lidar_camera", &calibration.T_lidar_camera)}) {
     part_of(key, [&](const Json& json) { *T = transform_of(json, key, description); });
   }
+  part_of("T_world_imu_start", [&](const Json& json) {
+    calibration.T_world_imu_start = transform_of(json, "T_world_imu_start", description);
+  });
   part_of("imu", [&](const Json& json) { description.acceleration_unit_mps2 = acceleration_unit_of(json); });
   part_of("time_offset", [&](const Json& json) { read_offsets(json, calibration); });
   return description;
@@ -142,7 +149,7 @@ CaptureDescription parse_capture_json(const std::string& text, const std::string
 
 std::string capture_json(const CaptureCalibration& calibration) {
   const CameraModel& camera = calibration.camera;
-  const Json json = {
+  Json json = {
       {"version", 1},
       {"camera",
        {{"model", camera.projection == CameraProjection::kPinhole ? "pinhole" : "fisheye"},
@@ -154,6 +161,7 @@ std::string capture_json(const CaptureCalibration& calibration) {
       {"T_lidar_camera", matrix_json(calibration.T_lidar_camera)},
       {"imu", {{"acceleration_unit", "m/s^2"}}},
       {"time_offset", {{"image_s", calibration.image_time_offset_s}, {"imu_s", calibration.imu_time_offset_s}}}};
+  if (calibration.T_world_imu_start) json["T_world_imu_start"] = matrix_json(*calibration.T_world_imu_start);
   return json.dump(1) + "\n";
 }
 

@@ -13,12 +13,6 @@
 
 namespace cmap {
 namespace fs = std::filesystem;
-namespace {
-
-constexpr double kStandardGravity_mps2 = 9.80665;
-
-}  // namespace
-
 struct Recording::State {
   /// What is read of a topic.
   struct Reader {

@@ -47,7 +47,7 @@ void read_recording(const Json& json, RecordingOptions& options) {
 
 }  // namespace
 
-RecordingConfiguration read_recording_configuration(const std::filesystem::path& path) {
+RecordingConfiguration read_recording_configuration(const std::filesystem::path& path, bool needs_camera) {
   RecordingConfiguration configuration;
   Json calibration;
   bool names_unit = false;
@@ -59,7 +59,7 @@ RecordingConfiguration read_recording_configuration(const std::filesystem::path&
     read_recording(json["recording"], configuration.options);
     calibration.erase("recording");
   });
-  CaptureDescription description = parse_capture_json(calibration.dump(), path.string());
+  CaptureDescription description = parse_capture_json(calibration.dump(), path.string(), {}, needs_camera);
   configuration.calibration = description.calibration;
   configuration.warnings = std::move(description.warnings);
   if (names_unit) {

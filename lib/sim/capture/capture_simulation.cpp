@@ -39,7 +39,7 @@ void check_capture_options(CaptureOptions options) {
 }
 
 /// What capture.json says, with the errors asked for.
-CaptureCalibration stated_calibration(const CaptureOptions& o) {
+CaptureCalibration stated_calibration(const CaptureOptions& o, const PoseSpline& path) {
   CaptureCalibration calibration;
   calibration.camera = camera_of(o.camera);
   calibration.T_imu_lidar = T_imu_lidar_of(o.mount);
@@ -47,6 +47,7 @@ CaptureCalibration stated_calibration(const CaptureOptions& o) {
   calibration.T_lidar_camera.translation() += o.stated.camera_translation_error_m;
   const Eigen::Vector3d turn = o.stated.camera_rotation_error_deg * (std::numbers::pi / 180.0);
   calibration.T_lidar_camera.linear() = calibration.T_lidar_camera.linear() * rotation_from(turn);
+  calibration.T_world_imu_start = path.pose(path.start_s());
   return calibration;
 }
 
@@ -72,10 +73,10 @@ class CaptureRun {
   CaptureRun(const CaptureOptions& options, const fs::path& folder)
       : o_(options),
         seed_(static_cast<std::uint64_t>(options.seed)),
-        writer_(folder, stated_calibration(options)),
-        truth_(writer_.subfolder("truth")),
         scene_(make_scene(options.scene)),
         path_(make_path(make_route(scene_, options.route), options.path, seed_)),
+        writer_(folder, stated_calibration(options, path_)),
+        truth_(writer_.subfolder("truth")),
         T_imu_lidar_(T_imu_lidar_of(options.mount)),
         T_imu_camera_(T_imu_lidar_ * T_lidar_camera_of(options.mount)) {
     end_s_ = path_.end_s();
@@ -226,10 +227,10 @@ class CaptureRun {
 
   const CaptureOptions& o_;
   std::uint64_t seed_;
-  CaptureWriter writer_;
-  fs::path truth_;
   Scene scene_;
   PoseSpline path_;
+  CaptureWriter writer_;
+  fs::path truth_;
   Eigen::Isometry3d T_imu_lidar_, T_imu_camera_;
   double end_s_ = 0.0;
   std::vector<double> image_times_;

@@ -76,11 +76,11 @@ Array<std::byte> column_body(const PointCloud& cloud) {
   return body;
 }
 
-void write_compressed(OutputFile& file, const std::filesystem::path& path, const PointCloud& cloud) {
+void write_compressed(OutputFile& file, const PointCloud& cloud) {
   const Array<std::byte> body = column_body(cloud);
   const Array<std::byte> compressed = lzf_shrink(body);
   if (compressed.empty() && !body.empty()) {
-    throw UsageError(path.string() + ": compressed PCD cannot hold this many points (4 GiB at most); choose binary");
+    throw UsageError("a compressed PCD cannot hold this many points (4 GiB at most); choose binary");
   }
   for (const std::size_t size : {compressed.size(), body.size()}) {
     const auto narrow = static_cast<std::uint32_t>(size);
@@ -91,14 +91,18 @@ void write_compressed(OutputFile& file, const std::filesystem::path& path, const
 
 }  // namespace
 
-void write_pcd(const std::filesystem::path& path, const PointCloud& cloud, PcdEncoding encoding) {
-  OutputFile file(path);
+void write_pcd(OutputFile& file, const PointCloud& cloud, PcdEncoding encoding) {
   file.write(header(cloud, encoding));
   if (encoding == PcdEncoding::kBinaryCompressed) {
-    write_compressed(file, path, cloud);
+    write_compressed(file, cloud);
   } else {
     write_rows(file, cloud, encoding == PcdEncoding::kAscii);
   }
+}
+
+void write_pcd(const std::filesystem::path& path, const PointCloud& cloud, PcdEncoding encoding) {
+  OutputFile file(path);
+  write_pcd(file, cloud, encoding);
   file.commit();
 }
 

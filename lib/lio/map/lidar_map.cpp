@@ -1,10 +1,11 @@
-#include "cmap/recon/lidar_map.hpp"
+#include "cmap/lio/lidar_map.hpp"
 
 #include <optional>
 
 #include "cmap/align/trajectory.hpp"
 #include "cmap/core/parallel.hpp"
 #include "cmap/geometry/voxel_map.hpp"
+#include "cmap/io/lidar_scan_file.hpp"
 
 namespace cmap {
 namespace {

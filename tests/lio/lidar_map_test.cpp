@@ -1,4 +1,4 @@
-#include "cmap/recon/lidar_map.hpp"
+#include "cmap/lio/lidar_map.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,311 @@
+#include "cmap/lio/odometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <deque>
+#include <numbers>
+
+#include "odometry/imu_queue.hpp"
+#include "odometry/scan_registration.hpp"
+#include "odometry/start.hpp"
+
+namespace cmap {
+namespace {
+
+/// Fewer matches, or a smaller share of the points once the map has its first scans, are no registration.
+constexpr std::size_t kLeastMatches = 30;
+constexpr double kLeastShare = 0.15;
+/// So many scans without registration, one after the other, and the map begins anew.
+constexpr int kMostMissed = 10;
+/// A scan goes into the map where the sensor has moved so far since the last that did, or is one of the first: seen from
+/// one place again and again, cells would be settled by the same few points.
+constexpr double kInsertStep_m = 0.1, kInsertTurn_rad = 1.0 * std::numbers::pi / 180.0;
+constexpr int kFirstScans = 10;
+/// Of poses before a scan's begin that its first points may need: stamps and cuts of turns wander.
+constexpr double kHistory_s = 0.5;
+
+double cpu_now_s() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+StampedPose stamped(double time_s, const NavState& state) { return {time_s, state.position, state.rotation}; }
+
+MotionNoise noise_of(const OdometryOptions& o) {
+  MotionNoise noise{.rate = o.gyro_noise,
+                    .force = o.force_noise,
+                    .gyro_bias_walk = o.gyro_bias_walk,
+                    .force_bias_walk = o.force_bias_walk,
+                    .free_rate = o.free_rate,
+                    .free_force = o.free_force};
+  if (!o.use_imu) {
+    // The gyro's bias stands for the rate: it walks as a rate does.
+    noise.gyro_bias_walk = o.free_turn;
+    noise.force_bias_walk = 0.0;
+  }
+  return noise;
+}
+
+PlaneMapOptions map_options(const OdometryOptions& o) {
+  PlaneMapOptions map{.voxel_m = o.voxel_m, .levels = o.levels, .most_points = o.cell_points,
+                      .forget_after_m = o.forget_after_m, .plane = {}};
+  map.plane.most_thickness_m = o.plane_thickness_m;
+  return map;
+}
+
+double worst_deviation(const StateMatrix& covariance, int first) {
+  return std::sqrt(std::max(0.0, covariance.block<3, 3>(first, first).diagonal().maxCoeff()));
+}
+
+}  // namespace
+
+const EnumNames<ScanOutcome>& scan_outcome_names() {
+  static const EnumNames<ScanOutcome> names{{ScanOutcome::kRegistered, "registered"},
+                                            {ScanOutcome::kFirst, "first"},
+                                            {ScanOutcome::kPredicted, "predicted"},
+                                            {ScanOutcome::kNewMap, "new map"}};
+  return names;
+}
+
+struct Odometry::State {
+  OdometryOptions options;
+  Eigen::Isometry3d T_imu_lidar;
+  std::optional<Eigen::Isometry3d> T_world_start;
+  Take take;
+  MotionNoise noise;
+
+  ImuQueue imu;
+  std::deque<ScanPoints> waiting;
+  PlaneMap map;
+  NavState nav;
+  StateMatrix covariance;
+  Trajectory track;  ///< the last poses
+  bool started = false;
+  int n_missed = 0;
+  int n_inserted = 0;
+  NavState at_insert;  ///< where the last scan went into the map
+  double last_end_s = 0.0;
+  bool any_scan = false;
+  OdometrySummary summary;
+
+  State(const OdometryOptions& o, const Eigen::Isometry3d& T, const std::optional<Eigen::Isometry3d>& start, Take t)
+      : options(o), T_imu_lidar(T), T_world_start(start), take(std::move(t)), noise(noise_of(o)),
+        imu(o.max_imu_gap_s), map(map_options(o)) {}
+
+  void add(ScanPoints scan);
+  void work(bool to_the_end);
+  void begin(bool alone);
+  void process(const ScanPoints& scan);
+  MotionTrack predict(double to_s, StateMatrix& predicted_covariance) const;
+  ScanOutcome outcome_of(const ScanRegistration& found);
+  bool adds_to_map() const;
+  void insert(const ScanPoints& scan, const MotionTrack& track);
+  void deliver(const ScanPoints& scan, const MotionTrack& track, OdometryScan result, double cpu_begin_s);
+  std::vector<MotionInput> inputs(double from_s, double to_s) const;
+  bool covered(const ScanPoints& scan) const {
+    return !options.use_imu || (!imu.empty() && imu.last_s() >= scan.end_s);
+  }
+};
+
+Odometry::Odometry(const OdometryOptions& options, const Eigen::Isometry3d& T_imu_lidar,
+                   const std::optional<Eigen::Isometry3d>& T_world_start, Take take) {
+  OdometryOptions checked = options;
+  check_options(option_fields(checked), "odometry");
+  state_ = std::make_unique<State>(options, T_imu_lidar, T_world_start, std::move(take));
+}
+
+Odometry::~Odometry() = default;
+
+void Odometry::add(const ImuSample& sample) {
+  if (!state_->options.use_imu) return;
+  if (!state_->imu.add(sample)) ++state_->summary.n_late_samples;
+  state_->work(false);
+}
+
+void Odometry::add(LidarScan scan) {
+  state_->add(scan_points(scan, state_->options));
+  state_->work(false);
+}
+
+void Odometry::finish() { state_->work(true); }
+
+OdometrySummary Odometry::summary() const {
+  OdometrySummary summary = state_->summary;
+  summary.n_imu_gaps = state_->imu.n_gaps();
+  summary.gravity_world = state_->nav.gravity;
+  summary.gyro_bias = state_->nav.gyro_bias;
+  summary.force_bias = state_->nav.force_bias;
+  return summary;
+}
+
+void Odometry::State::add(ScanPoints scan) {
+  if (any_scan && scan.end_s <= last_end_s) {
+    ++summary.n_late_scans;
+    return;
+  }
+  any_scan = true;
+  last_end_s = scan.end_s;
+  waiting.push_back(std::move(scan));
+}
+
+void Odometry::State::work(bool to_the_end) {
+  while (!waiting.empty()) {
+    if (options.use_imu && !started && !imu.empty() && waiting.front().begin_s < imu.first_s() - options.max_imu_gap_s) {
+      ++summary.n_before_imu;
+      waiting.pop_front();
+      continue;
+    }
+    if (!started) {
+      const bool two = waiting.size() > 1 && (covered(waiting[1]) || to_the_end);
+      if (!two && !to_the_end) return;
+      if (waiting.front().positions.empty() && waiting.size() > 1) {
+        waiting.pop_front();
+        continue;
+      }
+      begin(!two);
+      continue;
+    }
+    if (!covered(waiting.front()) && !to_the_end) return;
+    process(waiting.front());
+    waiting.pop_front();
+  }
+}
+
+void Odometry::State::begin(bool alone) {
+  const double cpu_begin_s = cpu_now_s();
+  const ScanPoints first = std::move(waiting.front());
+  waiting.pop_front();
+  const double until_s = alone ? first.end_s : waiting.front().end_s;
+  const std::vector<ImuSample> samples = imu.between(first.begin_s - 1.0, until_s);
+  const Start start = alone ? start_at_rest(first, samples, T_world_start)
+                            : find_start(first, waiting.front(), samples, T_imu_lidar, T_world_start, options);
+  nav = start.state;
+  covariance = start.covariance;
+  summary.started_in_motion = start.in_motion;
+  summary.start_speed_mps = nav.velocity.norm();
+  track = {stamped(first.begin_s, start.at_begin)};
+  if (first.end_s > first.begin_s) track.push_back(stamped(first.end_s, nav));
+  started = true;
+  const MotionTrack motion(track, nav, std::nullopt);
+  insert(first, motion);
+  OdometryScan result;
+  result.outcome = ScanOutcome::kFirst;
+  deliver(first, motion, std::move(result), cpu_begin_s);
+}
+
+std::vector<MotionInput> Odometry::State::inputs(double from_s, double to_s) const {
+  if (options.use_imu) return imu.inputs(from_s, to_s);
+  return {{.duration_s = to_s - from_s, .rate_measured = true, .force_measured = false}};
+}
+
+MotionTrack Odometry::State::predict(double to_s, StateMatrix& predicted_covariance) const {
+  Trajectory poses = track;
+  NavState state = nav;
+  predicted_covariance = covariance;
+  double t = poses.back().time_s;
+  for (const MotionInput& input : inputs(t, to_s)) {
+    predicted_covariance = propagated_covariance(state, predicted_covariance, input, noise);
+    state = propagated(state, input);
+    poses.push_back(stamped(t += input.duration_s, state));
+  }
+  poses.back().time_s = to_s;
+  const std::optional<double> kept_s = options.use_imu ? std::nullopt : std::optional(track.back().time_s);
+  return MotionTrack(std::move(poses), state, kept_s);
+}
+
+ScanOutcome Odometry::State::outcome_of(const ScanRegistration& found) {
+  const auto share = static_cast<double>(found.n_matches) / std::max(1.0, static_cast<double>(found.n_points));
+  if (found.n_matches >= kLeastMatches && (share >= kLeastShare || n_inserted < kFirstScans)) {
+    n_missed = 0;
+    return ScanOutcome::kRegistered;
+  }
+  if (found.n_points < kLeastMatches || ++n_missed < kMostMissed) return ScanOutcome::kPredicted;
+  n_missed = 0;
+  return ScanOutcome::kNewMap;
+}
+
+void Odometry::State::process(const ScanPoints& scan) {
+  const double cpu_begin_s = cpu_now_s();
+  StateMatrix predicted_covariance;
+  const MotionTrack motion = predict(scan.end_s, predicted_covariance);
+  const std::vector<std::uint32_t> chosen =
+      thinned(scan.positions, options.scan_voxel_m, static_cast<std::size_t>(options.scan_points));
+  const ScanRegistration found =
+      register_scan(map, scan, chosen, motion, predicted_covariance, T_imu_lidar, options);
+  OdometryScan result;
+  result.outcome = outcome_of(found);
+  const bool registered = result.outcome == ScanOutcome::kRegistered;
+  const Eigen::Vector3d before = nav.position;
+  nav = registered ? found.state : motion.predicted();
+  covariance = registered ? found.covariance : predicted_covariance;
+  summary.path_m += (nav.position - before).norm();
+  if (result.outcome == ScanOutcome::kNewMap) {
+    map = PlaneMap(map_options(options));
+    n_inserted = 0;
+  }
+  result.n_chosen = found.n_points;
+  result.n_matches = found.n_matches;
+  result.rms_m = found.rms_m;
+  result.open_shifts_world = found.open.shifts;
+  result.open_turns_imu = found.open.turns;
+  if (result.outcome != ScanOutcome::kPredicted && adds_to_map()) insert(scan, motion);
+  deliver(scan, motion, std::move(result), cpu_begin_s);
+}
+
+bool Odometry::State::adds_to_map() const {
+  return n_inserted < kFirstScans || (nav.position - at_insert.position).norm() > kInsertStep_m ||
+         nav.rotation.angularDistance(at_insert.rotation) > kInsertTurn_rad;
+}
+
+void Odometry::State::insert(const ScanPoints& scan, const MotionTrack& motion) {
+  ++n_inserted;
+  at_insert = nav;
+  const ScanPoses poses(motion, nav, T_imu_lidar, scan.end_s - scan.begin_s);
+  const double beam = options.beam_noise_deg * std::numbers::pi / 180.0;
+  std::vector<MapPoint> points;
+  for (const std::uint32_t i : thinned(scan.positions, options.insert_voxel_m, scan.positions.size())) {
+    const Eigen::Vector3d p = scan.positions[i].cast<double>();
+    // Across a surface at 45 degrees.
+    const double variance =
+        0.5 * (options.range_noise_m * options.range_noise_m + beam * beam * p.squaredNorm());
+    points.push_back({poses.at(scan.before_end_s[i]).T_world_lidar * p, variance});
+  }
+  map.add(points, summary.path_m);
+}
+
+void Odometry::State::deliver(const ScanPoints& scan, const MotionTrack& motion, OdometryScan result,
+                              double cpu_begin_s) {
+  const Eigen::Isometry3d T_world_imu = T_world_body(nav), T_imu_world = T_world_imu.inverse();
+  const ScanPoses poses(motion, nav, T_imu_lidar, scan.end_s - scan.begin_s);
+  result.points.reserve(scan.positions.size());
+  for (std::size_t i = 0; i < scan.positions.size(); ++i) {
+    const Eigen::Vector3d world = poses.at(scan.before_end_s[i]).T_world_lidar * scan.positions[i].cast<double>();
+    result.points.push_back((T_imu_world * world).cast<float>());
+  }
+  const double from_s = track.back().time_s;
+  Trajectory corrected;
+  for (const StampedPose& pose : motion.poses()) {
+    const Eigen::Isometry3d T = motion.pose(pose.time_s, nav);
+    if (pose.time_s > from_s || result.outcome == ScanOutcome::kFirst) {
+      result.between.push_back({pose.time_s, T.translation(), Eigen::Quaterniond(T.linear())});
+      corrected.push_back(result.between.back());
+    } else if (pose.time_s > scan.end_s - kHistory_s) {
+      corrected.push_back(pose);
+    }
+  }
+  track = std::move(corrected);
+  imu.forget_before(scan.end_s);
+  result.time_s = scan.end_s;
+  result.T_world_imu = T_world_imu;
+  result.n_measured = scan.n_measured;
+  result.n_points = scan.positions.size();
+  result.position_error_m = worst_deviation(covariance, part::kPosition);
+  result.rotation_error_deg = worst_deviation(covariance, part::kRotation) * 180.0 / std::numbers::pi;
+  result.cpu_s = cpu_now_s() - cpu_begin_s;
+  ++summary.n_scans;
+  take(std::move(result));
+}
+
+}  // namespace cmap

@@ -1,0 +1,138 @@
+#include "odometry/start.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "cmap/align/icp.hpp"
+#include "cmap/core/error.hpp"
+
+namespace cmap {
+namespace {
+
+constexpr int kPasses = 3;
+constexpr double kDegree = std::numbers::pi / 180.0;
+/// Of two registered scans: less is rest.
+constexpr double kRestSpeed_mps = 0.25, kRestRate_radps = 3.0 * kDegree;
+
+/// A steady motion, in the body's axes at a scan's end.
+struct Twist {
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero(), rate = Eigen::Vector3d::Zero();
+
+  Eigen::Isometry3d over(double seconds) const {
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+    T.linear() = rotation_exp(seconds * rate).toRotationMatrix();
+    T.translation() = seconds * velocity;
+    return T;
+  }
+};
+
+/// The scan as seen from the body at the scan's end.
+PointCloud compensated(const ScanPoints& scan, const Twist& twist, const Eigen::Isometry3d& T_imu_lidar) {
+  PointCloud cloud;
+  cloud.positions.reserve(scan.positions.size());
+  for (std::size_t i = 0; i < scan.positions.size(); ++i) {
+    const Eigen::Isometry3d T = twist.over(-static_cast<double>(scan.before_end_s[i])) * T_imu_lidar;
+    cloud.positions.push_back((T * scan.positions[i].cast<double>()).cast<float>());
+  }
+  return cloud;
+}
+
+/// The motion between the ends of two scans by registration; the one given where that cannot tell.
+Twist registered_twist(const ScanPoints& first, const ScanPoints& second, const Twist& twist,
+                       const Eigen::Isometry3d& T_imu_lidar, const OdometryOptions& options) {
+  const double dt = second.end_s - first.end_s;
+  const PointCloud target = compensated(first, twist, T_imu_lidar), source = compensated(second, twist, T_imu_lidar);
+  IcpOptions icp_options;
+  icp_options.levels = coarse_to_fine(options.scan_voxel_m, 2.0 * options.scan_voxel_m);
+  try {
+    const Alignment found = icp(source, target, twist.over(dt).matrix(), icp_options);
+    const Eigen::Quaterniond rotation(Eigen::Matrix3d(found.T_dst_src.topLeftCorner<3, 3>()));
+    return {found.T_dst_src.topRightCorner<3, 1>() / dt, rotation_log(rotation) / dt};
+  } catch (const UnsupportedError&) {
+    return twist;
+  }
+}
+
+Eigen::Vector3d mean_rate(std::span<const ImuSample> imu) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const ImuSample& sample : imu) sum += sample.angular_rate_radps;
+  return imu.empty() ? sum : Eigen::Vector3d(sum / static_cast<double>(imu.size()));
+}
+
+/// The mean force in the body's axes at a time.
+Eigen::Vector3d mean_force(std::span<const ImuSample> imu, const Eigen::Vector3d& rate, double time_s) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const ImuSample& sample : imu) {
+    sum += rotation_exp((sample.time_s - time_s) * rate) * sample.specific_force_mps2;
+  }
+  return sum / static_cast<double>(imu.size());
+}
+
+/// Upright by the force, heading along x.
+Eigen::Quaterniond leveled(const Eigen::Vector3d& force) {
+  const auto upright = Eigen::Quaterniond::FromTwoVectors(force, Eigen::Vector3d::UnitZ());
+  const Eigen::Vector3d ahead = upright * Eigen::Vector3d::UnitX();
+  return rotation_exp({0.0, 0.0, -std::atan2(ahead.y(), ahead.x())}) * upright;
+}
+
+StateMatrix start_covariance(bool with_imu, bool in_motion) {
+  StateVector deviations;
+  const auto set = [&](int first, double deviation) { deviations.segment<3>(first).setConstant(deviation); };
+  set(part::kRotation, 1e-4);
+  set(part::kPosition, 1e-4);
+  set(part::kVelocity, in_motion ? 0.3 : 0.05);
+  set(part::kGyroBias, !with_imu ? 0.1 : in_motion ? 0.01 : 0.003);
+  set(part::kForceBias, with_imu ? 0.05 : 1e-3);
+  set(part::kGravity, !with_imu ? 1e-3 : in_motion ? 0.5 : 0.05);
+  return StateMatrix(deviations.array().square().matrix().asDiagonal());
+}
+
+Start make_start(const ScanPoints& first, std::span<const ImuSample> imu, const Twist& twist, bool in_motion,
+                 const std::optional<Eigen::Isometry3d>& T_world_start) {
+  Start start;
+  start.in_motion = in_motion;
+  start.covariance = start_covariance(!imu.empty(), in_motion);
+  NavState& state = start.at_begin;
+  const Eigen::Vector3d force =
+      imu.empty() ? Eigen::Vector3d(0.0, 0.0, kStandardGravity_mps2) : mean_force(imu, twist.rate, first.begin_s);
+  if (T_world_start) {
+    state.rotation = Eigen::Quaterniond(T_world_start->linear());
+    state.position = T_world_start->translation();
+  } else if (!imu.empty()) {
+    state.rotation = leveled(force);
+  }
+  state.gravity = -kStandardGravity_mps2 * (state.rotation * force.normalized());
+  if (imu.empty()) {
+    state.gyro_bias = -twist.rate;
+  } else if (!in_motion) {
+    state.gyro_bias = mean_rate(imu);
+  }
+  const double duration_s = first.end_s - first.begin_s;
+  const Eigen::Isometry3d T_begin_end = twist.over(-duration_s).inverse();
+  start.state = state;
+  start.state.rotation = (state.rotation * Eigen::Quaterniond(T_begin_end.linear())).normalized();
+  start.state.position += state.rotation * T_begin_end.translation();
+  start.state.velocity = start.at_begin.velocity = start.state.rotation * twist.velocity;
+  return start;
+}
+
+}  // namespace
+
+Start find_start(const ScanPoints& first, const ScanPoints& second, std::span<const ImuSample> imu,
+                 const Eigen::Isometry3d& T_imu_lidar, const std::optional<Eigen::Isometry3d>& T_world_start,
+                 const OdometryOptions& options) {
+  Twist twist;
+  if (!imu.empty()) twist.rate = mean_rate(imu);
+  for (int pass = 0; pass < kPasses; ++pass) {
+    twist = registered_twist(first, second, twist, T_imu_lidar, options);
+  }
+  const bool in_motion = twist.velocity.norm() > kRestSpeed_mps || twist.rate.norm() > kRestRate_radps;
+  return make_start(first, imu, in_motion ? twist : Twist{}, in_motion, T_world_start);
+}
+
+Start start_at_rest(const ScanPoints& first, std::span<const ImuSample> imu,
+                    const std::optional<Eigen::Isometry3d>& T_world_start) {
+  return make_start(first, imu, {}, false, T_world_start);
+}
+
+}  // namespace cmap
