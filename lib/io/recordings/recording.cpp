@@ -13,6 +13,7 @@
 
 namespace cmap {
 namespace fs = std::filesystem;
+
 struct Recording::State {
   /// What is read of a topic.
   struct Reader {
