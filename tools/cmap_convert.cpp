@@ -63,11 +63,14 @@ cmap::ExitCode list_topics(const std::string& input) {
 void set_topic(cmap::RecordingOptions& options, const std::string& assignment) {
   const std::size_t equals = assignment.find('=');
   for (const auto& [role, name] : cmap::recording_role_names()) {
-    if (equals == std::string::npos || assignment.substr(0, equals) != name || equals + 1 == assignment.size()) continue;
+    if (equals == std::string::npos || assignment.substr(0, equals) != name || equals + 1 == assignment.size())
+      continue;
     options.source(role).topic = assignment.substr(equals + 1);
+    options.source(role).want = cmap::Want::kYes;
     return;
   }
-  throw cmap::UsageError(fmt::format("--topic: {} is none of lidar=NAME, imu=NAME, image=NAME, odometry=NAME", assignment));
+  throw cmap::UsageError(
+      fmt::format("--topic: {} is none of lidar=NAME, imu=NAME, image=NAME, odometry=NAME", assignment));
 }
 
 cmap::ExitCode run(const Arguments& a) {
@@ -78,8 +81,7 @@ cmap::ExitCode run(const Arguments& a) {
   for (const std::string& assignment : a.topics) set_topic(configuration.options, assignment);
   cmap::ProgressBar bar(!a.common.quiet);
   const cmap::ExecutionScope scope(
-      {.threads = a.common.threads,
-       .progress = [&](std::string_view stage, double done) { bar.update(stage, done); }});
+      {.threads = a.common.threads, .progress = [&](std::string_view stage, double done) { bar.update(stage, done); }});
   const cmap::UnpackedRecording found =
       cmap::unpack_recording(a.input, configuration, a.output, {a.start_s, a.duration_s});
   cmap::print_warnings(found.warnings);

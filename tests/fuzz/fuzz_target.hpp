@@ -14,6 +14,9 @@
 #include "cmap/core/error.hpp"
 #include "poses/trajectory_rows.hpp"
 #include "poses/transform_numbers.hpp"
+#include "recordings/mcap/mcap_store.hpp"
+#include "recordings/messages/message_decoder.hpp"
+#include "recordings/topic_choice.hpp"
 
 namespace cmap::fuzz {
 
@@ -114,6 +117,63 @@ inline void try_trajectory(std::span<const std::byte> input) {
       if (!(std::abs(pose.rotation.norm() - 1.0) < 1e-9)) __builtin_trap();
       if (i > 0 && !(pose.time_s > file.poses[i - 1].time_s)) __builtin_trap();
     }
+  } catch (const InputError&) {
+    // a refusal is an answer
+  }
+}
+
+/// What is understood of a message holds nothing but numbers, in arrays that belong together.
+inline void check_recorded(const RecordedMessage& message) {
+  if (const auto* scan = std::get_if<LidarScan>(&message)) {
+    const std::size_t n = scan->positions.size();
+    for (const std::size_t length : {scan->intensity.size(), scan->time_s.size(), scan->ring.size()}) {
+      if (length != 0 && length != n) __builtin_trap();
+    }
+    for (const Eigen::Vector3f& p : scan->positions) {
+      if (!p.allFinite()) __builtin_trap();
+    }
+    for (const float time_s : scan->time_s) {
+      if (!std::isfinite(time_s)) __builtin_trap();
+    }
+  } else if (const auto* image = std::get_if<RecordedImage>(&message)) {
+    if (image->row_bytes * static_cast<std::size_t>(image->height) > image->bytes.size()) __builtin_trap();
+  } else if (const auto* pose = std::get_if<StampedPose>(&message)) {
+    if (!(std::abs(pose->rotation.norm() - 1.0) < 1e-9)) __builtin_trap();
+  }
+}
+
+/// A message of a recording: the first byte says which kind, the next one in which encoding.
+inline void try_recorded_message(std::span<const std::byte> input) {
+  if (input.size() < 2) return;
+  const auto kind = static_cast<MessageKind>(std::to_integer<unsigned>(input[0]) % 7U);  // all but the time reference
+  const bool is_ros1 = (std::to_integer<unsigned>(input[1]) & 1U) != 0;
+  try {
+    MessageDecoder decoder(kind, is_ros1 ? MessageEncoding::kRos1 : MessageEncoding::kCdr, PointTimeUnit::kAuto, 1.0);
+    check_recorded(decoder.decode(input.subspan(2), std::nullopt));
+  } catch (const UnsupportedError&) {
+    // so is what cannot be used
+  } catch (const InputError&) {
+    // a refusal is an answer
+  }
+}
+
+/// An MCAP file, with whatever is understood of its messages.
+inline void try_recording(std::span<const std::byte> input) {
+  try {
+    const auto store = open_mcap(std::make_unique<ByteSource>("input", input));
+    std::vector<std::optional<MessageDecoder>> decoders;
+    for (const StoredTopic& topic : store->topics()) {
+      const std::optional<MessageKind> kind = kind_of(topic);
+      decoders.emplace_back();
+      if (kind && role_of(*kind)) decoders.back().emplace(*kind, topic.encoding(), PointTimeUnit::kAuto, 1.0);
+    }
+    StoredMessage message;
+    while (store->next(message)) {
+      if (message.topic >= decoders.size()) __builtin_trap();
+      if (decoders[message.topic]) check_recorded(decoders[message.topic]->decode(message.data, std::nullopt));
+    }
+  } catch (const UnsupportedError&) {
+    // so is what cannot be used
   } catch (const InputError&) {
     // a refusal is an answer
   }

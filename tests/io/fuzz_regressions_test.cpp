@@ -27,6 +27,8 @@ std::size_t replay(const std::filesystem::path& folder) {
     fuzz::try_capture(std::as_bytes(std::span(bytes)));
     fuzz::try_transform(std::as_bytes(std::span(bytes)));
     fuzz::try_trajectory(std::as_bytes(std::span(bytes)));
+    fuzz::try_recording(std::as_bytes(std::span(bytes)));
+    fuzz::try_recorded_message(std::as_bytes(std::span(bytes)));
     ++n;
   }
   return n;
@@ -81,6 +83,27 @@ TEST(FuzzRegressions, EveryTransformAndTrajectorySeedIsRead) {
   }
 }
 
+TEST(FuzzRegressions, EverySeedOfARecordingIsRead) {
+  for (const auto& entry : std::filesystem::directory_iterator(fuzz_folder() / "corpus" / "recording")) {
+    const std::string bytes = read_bytes(entry.path());
+    const auto store = open_mcap(std::make_unique<ByteSource>("seed", std::as_bytes(std::span(bytes))));
+    StoredMessage message;
+    std::size_t n = 0;
+    while (store->next(message)) ++n;
+    EXPECT_EQ(n, 3U) << entry.path();
+  }
+  std::size_t n = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(fuzz_folder() / "corpus" / "recorded_message")) {
+    const std::string bytes = read_bytes(entry.path());
+    const auto message = std::as_bytes(std::span(bytes));
+    MessageDecoder decoder(static_cast<MessageKind>(bytes[0]),
+                           bytes[1] == 1 ? MessageEncoding::kRos1 : MessageEncoding::kCdr, PointTimeUnit::kAuto, 1.0);
+    EXPECT_NO_THROW(decoder.decode(message.subspan(2), std::nullopt)) << entry.path();
+    ++n;
+  }
+  EXPECT_GE(n, 12U);
+}
+
 /// Every seed cut at every length, and with every byte changed: what a fuzzer does first.
 TEST(FuzzRegressions, CutAndChangedSeedsAreReadOrRefused) {
   for (const CloudFormat* format : cloud_formats()) {
@@ -99,7 +122,8 @@ TEST(FuzzRegressions, CutAndChangedSeedsAreReadOrRefused) {
 TEST(FuzzRegressions, CutAndChangedSessionsCapturesAndPosesAreReadOrRefused) {
   for (const auto& [name, attempt] :
        {std::pair{"session", &fuzz::try_session}, std::pair{"capture", &fuzz::try_capture},
-        std::pair{"transform", &fuzz::try_transform}, std::pair{"trajectory", &fuzz::try_trajectory}}) {
+        std::pair{"transform", &fuzz::try_transform}, std::pair{"trajectory", &fuzz::try_trajectory},
+        std::pair{"recording", &fuzz::try_recording}, std::pair{"recorded_message", &fuzz::try_recorded_message}}) {
     for (const auto& entry : std::filesystem::directory_iterator(fuzz_folder() / "corpus" / name)) {
       const std::string seed = read_bytes(entry.path());
       for (std::size_t i = 0; i < seed.size(); ++i) {

@@ -1,7 +1,6 @@
 #include <lz4frame.h>
 
 #include "io/mcap_testing.hpp"
-#include "recordings/mcap/crc32.hpp"
 
 namespace cmap::testing {
 namespace mcap_store_test {
@@ -18,7 +17,9 @@ std::vector<std::string> messages_in(const std::string& file) {
   }
 }
 
-McapText start() { return McapText().header().schema(1, "a/A").channel(1, 1, "/a").schema(2, "b/msg/B").channel(2, 2, "/b", "cdr"); }
+McapText start() {
+  return McapText().header().schema(1, "a/A").channel(1, 1, "/a").schema(2, "b/msg/B").channel(2, 2, "/b", "cdr");
+}
 
 std::string packed_by_lz4(const std::string& text) {
   std::string packed(LZ4F_compressFrameBound(text.size(), nullptr), '\0');
@@ -39,12 +40,14 @@ TEST(McapStore, TopicsWithTheirTypesAndNumbers) {
 }
 
 TEST(McapStore, MessagesComeByTimeAndThoseOfEqualTimesAsTheyStand) {
-  const std::string file = start().message(1, 5, "a").message(1, 3, "b").message(2, 5, "c").message(1, 3, "d").end().file();
+  const std::string file =
+      start().message(1, 5, "a").message(1, 3, "b").message(2, 5, "c").message(1, 3, "d").end().file();
   EXPECT_THAT(messages_in(file), ElementsAre("/a@3: b", "/a@3: d", "/a@5: a", "/b@5: c"));
 }
 
 TEST(McapStore, ChunksThatOverlapOrAreOutOfOrderAreMerged) {
-  const McapText late = start().message(1, 30, "late"), first = McapText().message(1, 1, "a").message(1, 9, "c").message(1, 20, "e"),
+  const McapText late = start().message(1, 30, "late"),
+                 first = McapText().message(1, 1, "a").message(1, 9, "c").message(1, 20, "e"),
                  second = McapText().message(2, 8, "b").message(2, 9, "d");
   const std::string file = McapText().header().chunk(late, 30, 30).chunk(first, 1, 20).chunk(second, 8, 9).end().file();
   EXPECT_THAT(messages_in(file), ElementsAre("/a@1: a", "/b@8: b", "/a@9: c", "/b@9: d", "/a@20: e", "/a@30: late"));
@@ -72,14 +75,16 @@ TEST(McapStore, Lz4) {
 
 TEST(McapStore, AnUnknownCompressionIsNamed) {
   const std::string file = McapText().header().chunk("abc", 3, 0, "snappy", 0, 0).end().file();
-  EXPECT_THAT(messages_in(file), ElementsAre("test.mcap: the chunk at byte 33: compression \"snappy\"; none, lz4 and zstd "
-                                             "are read (mcap compress writes them)"));
+  EXPECT_THAT(messages_in(file),
+              ElementsAre("test.mcap: the chunk at byte 33: compression \"snappy\"; none, lz4 and zstd "
+                          "are read (mcap compress writes them)"));
   EXPECT_THROW(mcap_of(file), UnsupportedError);
 }
 
 TEST(McapStore, AWrongChecksumIsAnErrorWhereItsMessagesCome) {
   const McapText first = start().message(1, 5, "x"), second = McapText().message(1, 6, "y");
-  const std::string file = McapText().header().chunk(first, 5, 5).chunk(second.str(), second.str().size(), 1, "", 6, 6).end().file();
+  const std::string file =
+      McapText().header().chunk(first, 5, 5).chunk(second.str(), second.str().size(), 1, "", 6, 6).end().file();
   EXPECT_THAT(messages_in(file), ElementsAre("/a@5: x", HasSubstr("checksum 0x00000001, but the bytes have 0x")));
 }
 
@@ -95,7 +100,12 @@ TEST(McapStore, MessagesOutsideOfChunksAreHeldToTheChecksumOfTheFile) {
 }
 
 TEST(McapStore, WhatIsCutOffGivesWhatStandsBefore) {
-  const std::string file = McapText().header().chunk(start().message(1, 5, "x"), 5, 5).chunk(McapText().message(1, 6, "y"), 6, 6).end().file();
+  const std::string file = McapText()
+                               .header()
+                               .chunk(start().message(1, 5, "x"), 5, 5)
+                               .chunk(McapText().message(1, 6, "y"), 6, 6)
+                               .end()
+                               .file();
   std::size_t most = 0;
   for (std::size_t n = 1; n < file.size(); ++n) {
     const std::vector<std::string> found = messages_in(file.substr(0, n));
@@ -110,26 +120,17 @@ TEST(McapStore, WhatIsCutOffGivesWhatStandsBefore) {
 }
 
 TEST(McapStore, WhatCannotBeIsNamed) {
-  EXPECT_THAT(messages_in(start().message(3, 5, "x").end().file()), ElementsAre(HasSubstr("channel 3, which was not declared")));
-  EXPECT_THAT(messages_in(start().channel(1, 1, "/other").end().file()), ElementsAre(HasSubstr("channel 1 is of /other, and was of /a")));
-  EXPECT_THAT(messages_in(start().channel(3, 2, "/a").end().file()), ElementsAre(HasSubstr("two channels of topic /a")));
+  EXPECT_THAT(messages_in(start().message(3, 5, "x").end().file()),
+              ElementsAre(HasSubstr("channel 3, which was not declared")));
+  EXPECT_THAT(messages_in(start().channel(1, 1, "/other").end().file()),
+              ElementsAre(HasSubstr("channel 1 is of /other, and was of /a")));
+  EXPECT_THAT(messages_in(start().channel(3, 2, "/a").end().file()),
+              ElementsAre(HasSubstr("two channels of topic /a")));
   EXPECT_THAT(messages_in(start().record(5, "short").end().file()), ElementsAre(HasSubstr("the record at byte")));
   EXPECT_THAT(messages_in(start().record(0, "").end().file()), ElementsAre(HasSubstr("a record of kind 0")));
-  EXPECT_THAT(messages_in(start().record(99, "of somebody else").message(1, 5, "x").end().file()), ElementsAre("/a@5: x"));
+  EXPECT_THAT(messages_in(start().record(99, "of somebody else").message(1, 5, "x").end().file()),
+              ElementsAre("/a@5: x"));
   EXPECT_THAT(messages_in("not MCAP"), ElementsAre("test.mcap: is no MCAP file"));
-}
-
-TEST(Crc32, EqualsZlibsForEveryLengthAndPlace) {
-  std::string text;
-  std::uint32_t state = 1;
-  for (int i = 0; i < 1000; ++i) text += static_cast<char>((state = state * 1664525U + 1013904223U) >> 24U);
-  for (std::size_t begin : {0U, 1U, 7U}) {
-    for (std::size_t n = 0; n <= 300; ++n) {
-      ASSERT_EQ(crc32_of(bytes_of(text).subspan(begin, n)), McapText::crc(text.substr(begin, n))) << n;
-    }
-  }
-  EXPECT_EQ(crc32_of(bytes_of(text)), McapText::crc(text));
-  EXPECT_EQ(crc32_of(bytes_of(text).subspan(333), crc32_of(bytes_of(text).first(333))), McapText::crc(text));
 }
 
 }  // namespace mcap_store_test

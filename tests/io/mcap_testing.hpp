@@ -22,8 +22,10 @@ class McapText {
   McapText& schema(std::uint16_t id, std::string_view type) {
     return record(3, WireWriter(Wire::kRos1).put(id).text(type).text("ros1msg").text("").str());
   }
-  McapText& channel(std::uint16_t id, std::uint16_t schema, std::string_view topic, std::string_view encoding = "ros1") {
-    return record(4, WireWriter(Wire::kRos1).put(id).put(schema).text(topic).text(encoding).put(std::uint32_t{0}).str());
+  McapText& channel(std::uint16_t id, std::uint16_t schema, std::string_view topic,
+                    std::string_view encoding = "ros1") {
+    return record(4,
+                  WireWriter(Wire::kRos1).put(id).put(schema).text(topic).text(encoding).put(std::uint32_t{0}).str());
   }
   McapText& message(std::uint16_t channel, std::uint64_t log_time_ns, std::string_view data) {
     const std::uint32_t sequence = 0;
@@ -32,8 +34,8 @@ class McapText {
   McapText& chunk(const McapText& records, std::uint64_t first_ns, std::uint64_t last_ns) {
     return chunk(records.str(), records.str().size(), crc(records.str()), "", first_ns, last_ns);
   }
-  McapText& chunk(std::string_view packed, std::uint64_t unpacked_bytes, std::uint32_t its_crc, std::string_view compression,
-                  std::uint64_t first_ns, std::uint64_t last_ns) {
+  McapText& chunk(std::string_view packed, std::uint64_t unpacked_bytes, std::uint32_t its_crc,
+                  std::string_view compression, std::uint64_t first_ns, std::uint64_t last_ns) {
     WireWriter body(Wire::kRos1);
     body.put(first_ns).put(last_ns).put(unpacked_bytes).put(its_crc).text(compression);
     body.put(static_cast<std::uint64_t>(packed.size())).raw(packed);
@@ -46,7 +48,8 @@ class McapText {
   }
 
   static std::uint32_t crc(std::string_view bytes) {
-    return static_cast<std::uint32_t>(::crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size())));
+    return static_cast<std::uint32_t>(
+        ::crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size())));
   }
   const std::string& str() const { return bytes_; }
   static constexpr std::string_view kMagic{"\x89MCAP0\r\n", 8};
@@ -67,8 +70,9 @@ inline std::vector<std::string> messages_of(MessageStore& store) {
   StoredMessage message;
   try {
     while (store.next(message)) {
-      messages.push_back(fmt::format("{}@{}: {}", store.topics()[message.topic].name, message.log_time_ns,
-                                     std::string_view(reinterpret_cast<const char*>(message.data.data()), message.data.size())));
+      messages.push_back(
+          fmt::format("{}@{}: {}", store.topics()[message.topic].name, message.log_time_ns,
+                      std::string_view(reinterpret_cast<const char*>(message.data.data()), message.data.size())));
     }
   } catch (const Error& error) {
     messages.emplace_back(error.what());

@@ -27,9 +27,9 @@ std::string refusal_of(const CloudText& cloud) {
 }
 
 /// Velodyne's points: 22 bytes.
-const std::vector<FieldText> kVelodyne{{"x", 0, kPointFloat32},         {"y", 4, kPointFloat32},
-                                       {"z", 8, kPointFloat32},         {"intensity", 12, kPointFloat32},
-                                       {"ring", 16, kPointUint16},      {"time", 18, kPointFloat32}};
+const std::vector<FieldText> kVelodyne{{"x", 0, kPointFloat32},    {"y", 4, kPointFloat32},
+                                       {"z", 8, kPointFloat32},    {"intensity", 12, kPointFloat32},
+                                       {"ring", 16, kPointUint16}, {"time", 18, kPointFloat32}};
 
 CloudText velodyne(std::initializer_list<float> times) {
   Bytes data;
@@ -61,10 +61,17 @@ TEST(PointCloud2, FieldsOutOfOrderInPaddedRowsAndPointsOfBigEndian) {
     data.put(static_cast<float>(2 * k), std::uint32_t{0xFFFFFFFF});
     if (k == 2.0 || k == 4.0) data.text("row's padding");
   }
-  const CloudText cloud{2,    2,
-                        {{"z", 0, kPointFloat32}, {"unknown", 4, 99}, {"x", 5, kPointFloat64}, {"t", 13, kPointUint32},
+  const CloudText cloud{2,
+                        2,
+                        {{"z", 0, kPointFloat32},
+                         {"unknown", 4, 99},
+                         {"x", 5, kPointFloat64},
+                         {"t", 13, kPointUint32},
                          {"y", 17, kPointFloat32}},
-                        true, 25, 63, data.str()};
+                        true,
+                        25,
+                        63,
+                        data.str()};
   for (const Wire wire : kWires) {
     const LidarScan scan = read(wire, point_cloud2(wire, cloud));
     EXPECT_THAT(scan.positions, ElementsAre(Eigen::Vector3f(1, 2, 3), Eigen::Vector3f(2, 4, 6),
@@ -91,19 +98,21 @@ TEST(PointCloud2, PointsThatAreNoneGoWithTheirTimes) {
 }
 
 TEST(PointCloud2, LivoxTimesOfAClockAreOffsetsAndItsNoiseIsLeftOut) {
-  const std::vector<FieldText> fields{{"x", 0, kPointFloat32},     {"y", 4, kPointFloat32},  {"z", 8, kPointFloat32},
-                                      {"intensity", 12, kPointFloat32}, {"tag", 16, kPointUint8}, {"line", 17, kPointUint8},
+  const std::vector<FieldText> fields{{"x", 0, kPointFloat32},         {"y", 4, kPointFloat32},
+                                      {"z", 8, kPointFloat32},         {"intensity", 12, kPointFloat32},
+                                      {"tag", 16, kPointUint8},        {"line", 17, kPointUint8},
                                       {"timestamp", 18, kPointFloat64}};
   Bytes data;
   const double stamp_ns = 1700000000.25e9;
   int k = 0;
   for (const int tag : {0x00, 0x10, 0x20, 0x30, 0x0F}) {
-    data.put(1.0F + static_cast<float>(k), 0.0F, 0.0F, 5.0F, static_cast<std::uint8_t>(tag), static_cast<std::uint8_t>(k),
-             stamp_ns + 1024.0 * 1e3 * k);
+    data.put(1.0F + static_cast<float>(k), 0.0F, 0.0F, 5.0F, static_cast<std::uint8_t>(tag),
+             static_cast<std::uint8_t>(k), stamp_ns + 1024.0 * 1e3 * k);
     ++k;
   }
-  const LidarScan scan = read(Wire::kCdrLittle, point_cloud2(Wire::kCdrLittle, {1, 5, fields, false, 26, 130, data.str()},
-                                                             1700000000, 250'000'000));
+  const LidarScan scan =
+      read(Wire::kCdrLittle,
+           point_cloud2(Wire::kCdrLittle, {1, 5, fields, false, 26, 130, data.str()}, 1700000000, 250'000'000));
   EXPECT_THAT(scan.ring, ElementsAre(0, 1, 4));
   EXPECT_THAT(scan.time_s, ElementsAre(0.0F, 1.024e-3F, 4.096e-3F));
 }

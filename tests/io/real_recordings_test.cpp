@@ -213,7 +213,8 @@ TEST_F(RealRecordings, PacketsOfAVlp16AreTheTurnThatNebulaDecoded) {
   if (!open("nebula_vlp16")) GTEST_SKIP() << "built without SQLite";
   Recording recording(bags_ / "nebula_vlp16");
   std::vector<LidarScan> scans;
-  while (std::optional<RecordedMessage> message = recording.next()) scans.push_back(std::get<LidarScan>(std::move(*message)));
+  while (std::optional<RecordedMessage> message = recording.next())
+    scans.push_back(std::get<LidarScan>(std::move(*message)));
   ASSERT_EQ(scans.size(), 4U);
   // Nebula's turn begins at azimuth 0, in the last packets of the message before.
   std::map<std::pair<int, long>, std::vector<Eigen::Vector3f>> ours;

@@ -43,7 +43,8 @@ std::string refusal_of(const WireWriter& writer, Read&& read_message) {
   return {};
 }
 
-WireWriter livox(Wire wire, std::uint64_t timebase_ns, std::uint32_t declared, std::initializer_list<std::uint8_t> tags) {
+WireWriter livox(Wire wire, std::uint64_t timebase_ns, std::uint32_t declared,
+                 std::initializer_list<std::uint8_t> tags) {
   WireWriter writer(wire);
   writer.header(1, 50, 250'000'000).put(timebase_ns).put(declared).zeros<std::uint8_t>(4);
   writer.put(static_cast<std::uint32_t>(tags.size()));
@@ -70,11 +71,13 @@ TEST(LivoxCustom, PointsByTagWithTheirTimesFromTheStamp) {
 TEST(LivoxCustom, ATimebaseBesideTheStampShiftsTimesAndOneOfAnotherClockDoesNot) {
   EXPECT_THAT(read(livox(Wire::kRos1, 50'240'000'000, 1, {0}), read_livox_custom).time_s, ElementsAre(FloatEq(-0.01F)));
   EXPECT_THAT(read(livox(Wire::kRos1, 3'000'000'000, 1, {0}), read_livox_custom).time_s, ElementsAre(FloatEq(0.0F)));
-  EXPECT_THAT(read(livox(Wire::kRos1, 0xFFFFFFFFFFFFFFFF, 1, {0}), read_livox_custom).time_s, ElementsAre(FloatEq(0.0F)));
+  EXPECT_THAT(read(livox(Wire::kRos1, 0xFFFFFFFFFFFFFFFF, 1, {0}), read_livox_custom).time_s,
+              ElementsAre(FloatEq(0.0F)));
 }
 
 TEST(LivoxCustom, WhatIsWrongIsNamed) {
-  EXPECT_THAT(refusal_of(livox(Wire::kRos1, 0, 5, {0, 0}), read_livox_custom), HasSubstr("2 points, but point_num is 5"));
+  EXPECT_THAT(refusal_of(livox(Wire::kRos1, 0, 5, {0, 0}), read_livox_custom),
+              HasSubstr("2 points, but point_num is 5"));
   EXPECT_TRUE(read(livox(Wire::kCdrLittle, 0, 0, {}), read_livox_custom).positions.empty());
   for (const Wire wire : kWires) expect_cuts_refused(livox(wire, 0, 2, {0, 0}), read_livox_custom);
 }
@@ -133,7 +136,8 @@ TEST(RecordedMessages, CompressedImageIsWhatItsBytesSay) {
 
 WireWriter odometry(Wire wire, double w) {
   WireWriter writer(wire);
-  writer.header(3, 9, 5).text("base").put(1.0).put(2.0).put(3.0).put(0.0).put(0.0).put(0.0).put(w).zeros<double>(36 + 6 + 36);
+  writer.header(3, 9, 5).text("base").put(1.0).put(2.0).put(3.0).put(0.0).put(0.0).put(0.0).put(w).zeros<double>(
+      36 + 6 + 36);
   return writer;
 }
 
@@ -183,8 +187,12 @@ TEST(VelodyneScan, ShotsOfAPacketWithTheirTimes) {
     ASSERT_EQ(scan.positions.size(), 12U * 32U);
     // Laser 1 looks 1 degree up; the head has turned 2.304 / 110.592 of the way to the next block, across 360 degrees.
     const double azimuth = (359.0 + 0.4 * 2.304 / 110.592) * M_PI / 180.0, elevation = M_PI / 180.0;
-    EXPECT_LT((scan.positions[1] - Eigen::Vector3d(2 * std::cos(elevation) * std::cos(azimuth), -2 * std::cos(elevation) * std::sin(azimuth),
-                                                   2 * std::sin(elevation)).cast<float>()).norm(), 1e-6F);
+    EXPECT_LT(
+        (scan.positions[1] - Eigen::Vector3d(2 * std::cos(elevation) * std::cos(azimuth),
+                                             -2 * std::cos(elevation) * std::sin(azimuth), 2 * std::sin(elevation))
+                                 .cast<float>())
+            .norm(),
+        1e-6F);
     EXPECT_EQ(scan.ring[0], 0);
     EXPECT_EQ(scan.ring[1], 8);
     EXPECT_EQ(scan.intensity[33], 1.0F);

@@ -13,8 +13,13 @@ constexpr std::string_view kImu = "sensor_msgs/Imu", kCloud = "sensor_msgs/msg/P
 std::string cloud(std::uint32_t width) {
   std::string data;
   for (std::uint32_t i = 0; i < width; ++i) data += Bytes().put(1.0F, 2.0F, 3.0F).str();
-  return point_cloud2(Wire::kCdrLittle, {1, width, {{"x", 0, kPointFloat32}, {"y", 4, kPointFloat32}, {"z", 8, kPointFloat32}},
-                                         false, 12, 12 * width, data});
+  return point_cloud2(Wire::kCdrLittle, {1,
+                                         width,
+                                         {{"x", 0, kPointFloat32}, {"y", 4, kPointFloat32}, {"z", 8, kPointFloat32}},
+                                         false,
+                                         12,
+                                         12 * width,
+                                         data});
 }
 
 McapText start() {
@@ -54,7 +59,9 @@ class RecordingTest : public ::testing::Test {
 
 TEST_F(RecordingTest, MessagesByArrivalWithTheStampsOfTheirHeaders) {
   McapText text = start();
-  text.message(2, 300'000'000'000, cloud(2)).message(1, 200'000'000'000, imu_message(Wire::kRos1, 0, 0, 9.8, 0, 107)).end();
+  text.message(2, 300'000'000'000, cloud(2))
+      .message(1, 200'000'000'000, imu_message(Wire::kRos1, 0, 0, 9.8, 0, 107))
+      .end();
   EXPECT_THAT(read(text), ElementsAre("imu at 107 of 9.80000", "scan at 100.5 of 2"));
   Recording recording(folder_ / "drive.mcap");
   EXPECT_EQ(recording.done(), 0.0);
@@ -69,7 +76,10 @@ TEST_F(RecordingTest, MessagesByArrivalWithTheStampsOfTheirHeaders) {
 }
 
 TEST_F(RecordingTest, AccelerationsInGAreSeenByTheirLength) {
-  const McapText in_g = start().message(1, 0, imu_message(Wire::kRos1, 0.1, 0, 1.0)).message(1, 1, imu_message(Wire::kRos1, 0, 0, 2.0)).end();
+  const McapText in_g = start()
+                            .message(1, 0, imu_message(Wire::kRos1, 0.1, 0, 1.0))
+                            .message(1, 1, imu_message(Wire::kRos1, 0, 0, 2.0))
+                            .end();
   EXPECT_THAT(read(in_g), ElementsAre("imu at 100 of 9.80665", "imu at 100 of 19.61330"));
   EXPECT_TRUE(Recording(folder_ / "drive.mcap").has_acceleration_in_g());
   RecordingOptions options;
@@ -80,11 +90,14 @@ TEST_F(RecordingTest, AccelerationsInGAreSeenByTheirLength) {
 TEST_F(RecordingTest, ATopicThatIsNotThereIsAnErrorThatListsWhatIs) {
   const McapText text = start().message(1, 5, imu_message(Wire::kRos1, 0, 0, 9.8)).end();
   RecordingOptions options;
+  EXPECT_EQ(options.source(RecordingRole::kOdometry).want, Want::kNo) << "nobody's sensor";
   options.source(RecordingRole::kLidar).topic = "/livox/lidar";
-  EXPECT_THAT(read(text, options), ElementsAre(HasSubstr("drive.mcap: no topic /livox/lidar; there is /imu (sensor_msgs/Imu, 1 messages), "
-                                                         "/points (sensor_msgs/PointCloud2, 0 messages)")));
+  EXPECT_THAT(read(text, options),
+              ElementsAre(HasSubstr("drive.mcap: no topic /livox/lidar; there is /imu (sensor_msgs/Imu, 1 messages), "
+                                    "/points (sensor_msgs/PointCloud2, 0 messages)")));
   options.source(RecordingRole::kLidar).topic = "/imu";
-  EXPECT_THAT(read(text, options), ElementsAre(HasSubstr("topic /imu holds sensor_msgs/Imu (ros1), which cannot be read as lidar")));
+  EXPECT_THAT(read(text, options),
+              ElementsAre(HasSubstr("topic /imu holds sensor_msgs/Imu (ros1), which cannot be read as lidar")));
   options.source(RecordingRole::kLidar) = {Want::kYes, "", ""};
   EXPECT_THAT(read(text, options), ElementsAre(HasSubstr("no topic for the lidar; there is /imu")));
   EXPECT_THAT(read(text), ElementsAre("imu at 100 of 9.80000"));
@@ -93,7 +106,9 @@ TEST_F(RecordingTest, ATopicThatIsNotThereIsAnErrorThatListsWhatIs) {
 TEST_F(RecordingTest, OfSeveralTopicsOfAKindOneMustBeNamed) {
   McapText text = start().channel(3, 1, "/imu2");
   text.message(1, 5, imu_message(Wire::kRos1, 0, 0, 9.8)).message(3, 6, imu_message(Wire::kRos1, 0, 0, 9.7)).end();
-  EXPECT_THAT(read(text), ElementsAre(HasSubstr("which topic is the imu's (recording.topics)? There is /imu (sensor_msgs/Imu, 1 messages), /imu2")));
+  EXPECT_THAT(read(text),
+              ElementsAre(HasSubstr(
+                  "which topic is the imu's (recording.topics)? There is /imu (sensor_msgs/Imu, 1 messages), /imu2")));
   RecordingOptions options;
   options.source(RecordingRole::kImu).topic = "/imu2";
   EXPECT_THAT(read(text, options), ElementsAre("imu at 100 of 9.70000"));
@@ -123,7 +138,8 @@ TEST_F(RecordingTest, TimeReferencesTakeThePlaceOfStamps) {
     return WireWriter(Wire::kRos1).header(sequence, 1, 0).put(seconds).put(std::uint32_t{0}).text("").str();
   };
   McapText text = start().schema(3, "sensor_msgs/TimeReference").channel(3, 3, "/imu/time_ref");
-  for (const std::uint32_t sequence : {1U, 2U, 3U}) text.message(1, sequence, imu_message(Wire::kRos1, 0, 0, 9.8, sequence));
+  for (const std::uint32_t sequence : {1U, 2U, 3U})
+    text.message(1, sequence, imu_message(Wire::kRos1, 0, 0, 9.8, sequence));
   text.message(3, 9, reference(1, 51)).message(3, 10, reference(3, 53)).end();
   RecordingOptions options;
   options.source(RecordingRole::kImu).time_reference = "/imu/time_ref";
@@ -167,14 +183,48 @@ TEST_F(RecordingTest, WhatIsNoneIsNamed) {
   EXPECT_THAT(refusal_of(folder_ / "missing"), HasSubstr("no such file"));
 }
 
+/// The beginning of a bag of ROS 1 whose recording did not end: no index.
+std::string unindexed_bag() {
+  Bytes fields;
+  const auto field = [&](std::string_view name, std::string_view value) {
+    fields.put(static_cast<std::uint32_t>(name.size() + 1 + value.size())).text(name).text("=").text(value);
+  };
+  field("op", "\x03");
+  field("index_pos", std::string(8, '\0'));
+  field("conn_count", std::string(4, '\0'));
+  field("chunk_count", std::string(4, '\0'));
+  const auto size = static_cast<std::uint32_t>(fields.str().size());
+  const std::uint32_t padding = 4096 - 13 - 8 - size;
+  Bytes bag("#ROSBAG V2.0\n");
+  bag.put(size).text(fields.str()).put(padding).text(std::string(padding, ' '));
+  return bag.text("what was recorded").str();
+}
+
+TEST_F(RecordingTest, ABagWithoutIndexIsNamed) {
+  const std::string said = refusal_of(folder_.write("a.bag", unindexed_bag()));
+  EXPECT_THAT(said,
+              ::testing::AnyOf(HasSubstr("a.bag: the bag is not indexed"), HasSubstr("this build of cmap cannot")));
+}
+
 TEST_F(RecordingTest, TheFilesOfARecordingAreMergedByTime) {
-  folder_.write("a.mcap", start().message(1, 5, imu_message(Wire::kRos1, 0, 0, 5)).message(1, 9, imu_message(Wire::kRos1, 0, 0, 9)).end().file());
-  folder_.write("b.mcap", start().message(1, 7, imu_message(Wire::kRos1, 0, 0, 7)).message(1, 9, imu_message(Wire::kRos1, 0, 0, 10)).end().file());
-  for (const std::string_view list : {"relative_file_paths:\n    - a.mcap\n    - 'b.mcap'\n", "relative_file_paths: [a.mcap, \"b.mcap\"]\n"}) {
-    folder_.write("metadata.yaml", "rosbag2_bagfile_information:\n  version: 8\n  " + std::string(list) + "  compression_mode: ''\n");
+  folder_.write("a.mcap", start()
+                              .message(1, 5, imu_message(Wire::kRos1, 0, 0, 5))
+                              .message(1, 9, imu_message(Wire::kRos1, 0, 0, 9))
+                              .end()
+                              .file());
+  folder_.write("b.mcap", start()
+                              .message(1, 7, imu_message(Wire::kRos1, 0, 0, 7))
+                              .message(1, 9, imu_message(Wire::kRos1, 0, 0, 10))
+                              .end()
+                              .file());
+  for (const std::string_view list :
+       {"relative_file_paths:\n    - a.mcap\n    - 'b.mcap'\n", "relative_file_paths: [a.mcap, \"b.mcap\"]\n"}) {
+    folder_.write("metadata.yaml",
+                  "rosbag2_bagfile_information:\n  version: 8\n  " + std::string(list) + "  compression_mode: ''\n");
     Recording recording(folder_.path());
     EXPECT_EQ(recording.topics()[0].n_messages, 4U);
-    EXPECT_THAT(all_of(recording), ElementsAre("imu at 100 of 5.00000", "imu at 100 of 7.00000", "imu at 100 of 9.00000", "imu at 100 of 10.00000"));
+    EXPECT_THAT(all_of(recording), ElementsAre("imu at 100 of 5.00000", "imu at 100 of 7.00000",
+                                               "imu at 100 of 9.00000", "imu at 100 of 10.00000"));
   }
 }
 
@@ -185,7 +235,8 @@ TEST_F(RecordingTest, WhatMetadataSaysAndIsNotReadIsNamed) {
     folder_.write("metadata.yaml", text);
     return refusal_of(folder_.path());
   };
-  EXPECT_THAT(refusal_with(list + "compression_format: zstd\ncompression_mode: FILE\n"), HasSubstr("files packed by zstd as a whole"));
+  EXPECT_THAT(refusal_with(list + "compression_format: zstd\ncompression_mode: FILE\n"),
+              HasSubstr("files packed by zstd as a whole"));
   EXPECT_THAT(refusal_with("relative_file_paths:\n  - gone.db3\n"), HasSubstr("lists gone.db3, which is not there"));
   EXPECT_THAT(refusal_with("relative_file_paths: []\n"), HasSubstr("lists no file"));
   EXPECT_EQ(refusal_with(list + "compression_format: \"\"\ncompression_mode: NONE\n"), "");

@@ -24,7 +24,7 @@ from ply import read_ply  # noqa: E402
 
 SOURCE = Path(os.environ["CMAP_SOURCE_DIR"]).resolve()
 TOWN = SOURCE / "data_samples/town"
-NAMES = ("cmap_eval", "cmap_align", "cmap_compare", "cmap_leaderboard", "cmap_render", "cmap_simulate", "cmap_recon")
+NAMES = ("cmap_eval", "cmap_align", "cmap_compare", "cmap_leaderboard", "cmap_render", "cmap_simulate", "cmap_recon", "cmap_convert")
 PROGRAMS = {name: Path(os.environ[name.upper()]).resolve() for name in NAMES if name.upper() in os.environ}
 # Seconds in place of minutes: a short street, few pixels.
 QUICK = ["route.length_m=24", "truth.map_points_per_m2=5", "camera.width_px=160", "camera.height_px=120",
@@ -210,6 +210,11 @@ CHECKS = {
         makes("session/sessions.json"),
         lambda run: run.test.assertFalse((run.folder / "session/map.ply").exists()),
     ],
+    "cmap_convert drive.mcap --topics": [says(r"(?m)^lidar +3  /points  sensor_msgs/PointCloud2 \(ros1\)$")],
+    "cmap_convert drive.mcap -o capture --config rig.json": [
+        says("^3 scans, 3 images, 3 IMU samples, 0 poses\n"), makes("capture/capture.json", "capture/lidar/000002.pcd", "capture/imu.csv")],
+    "cmap_convert drive.mcap -o part": [says("^2 scans")],
+    "cmap_convert drive.mcap -o capture --config rig.json --topic": [makes("capture/images/000000.png")],
     "cmap_compare a.json b.json c.json": [says(r"\*", r"\+", "best")],
     "cmap_compare a.json b.json --baseline": [says(r"Better \(\+\) or worse \(-\) than a", "95 % intervals", "accuracy")],
     "cmap_compare a.json b.json --names": [
@@ -234,7 +239,8 @@ class Run:
     def __init__(self, test, example, folder, inputs):
         self.test, self.example, self.folder = test, example, folder
         for path in inputs.iterdir():
-            if not (path.name == "capture" and "cmap_simulate" in example.command):
+            makes_capture = "cmap_simulate" in example.command or "cmap_convert" in example.command
+            if not (path.name == "capture" and makes_capture):
                 (folder / path.name).symlink_to(path)
         self.start = check_of(example.command)
         if self.start in BEFORE:
@@ -288,7 +294,41 @@ def write_trajectories(folder):
         (folder / name).write_text("\n".join(lines) + "\n")
 
 
+def write_recording(folder):
+    """Three seconds of a LiDAR, an IMU and a camera as an MCAP file of ROS 1 messages, and what the rig is."""
+    def text(value):
+        return struct.pack("<I", len(value)) + value
+
+    def record(opcode, body):
+        return struct.pack("<BQ", opcode, len(body)) + body
+
+    types = {1: (b"/points", b"sensor_msgs/PointCloud2"), 2: (b"/imu", b"sensor_msgs/Imu"), 3: (b"/left/image_raw", b"sensor_msgs/Image")}
+    data = b"\x89MCAP0\r\n" + record(1, text(b"ros1") + text(b""))
+    for number, (topic, kind) in types.items():
+        data += record(3, struct.pack("<H", number) + text(kind) + text(b"ros1msg") + text(b""))
+        data += record(4, struct.pack("<HH", number, number) + text(topic) + text(b"ros1") + struct.pack("<I", 0))
+    points = np.random.default_rng(1).normal(0, 5, (50, 3)).astype("<f4").tobytes()
+    fields = b"".join(text(axis) + struct.pack("<IBI", 4 * k, 7, 1) for k, axis in enumerate((b"x", b"y", b"z")))
+    for second in range(3):
+        header = struct.pack("<III", second, 1700000000 + second, 0) + text(b"frame")
+        messages = {
+            1: header + struct.pack("<III", 1, 50, 3) + fields + struct.pack("<BII", 0, 12, 600) + text(points) + b"\1",
+            2: header + struct.pack("<37d", *[0] * 27, 9.8, *[0] * 9),
+            3: header + struct.pack("<II", 4, 6) + text(b"bgr8") + struct.pack("<BI", 0, 18) + text(bytes(range(72))),
+        }
+        for number, message in messages.items():
+            arrival = (1700000000 + second) * 10**9
+            data += record(5, struct.pack("<HIQQ", number, second, arrival, arrival) + message)
+    data += record(15, struct.pack("<I", 0)) + record(2, struct.pack("<QQI", 0, 0, 0)) + b"\x89MCAP0\r\n"
+    (folder / "drive.mcap").write_bytes(data)
+    unit = [[float(i == k) for k in range(4)] for i in range(4)]
+    camera = {"model": "pinhole", "width": 6, "height": 4, "K": [5, 5, 2.5, 1.5]}
+    rig = {"version": 1, "camera": camera, "T_imu_lidar": unit, "T_lidar_camera": unit}
+    (folder / "rig.json").write_text(json.dumps(rig))
+
+
 def write_inputs(folder):
+    write_recording(folder)
     reference, estimate = (read_ply(TOWN / f"{name}.ply") for name in ("reference", "estimate"))
     for name in ("reference.ply", "ref.ply", "map.ply"):
         shutil.copy(TOWN / "reference.ply", folder / name)
@@ -370,6 +410,9 @@ class Examples(unittest.TestCase):
     def test_recon(self):
         self.check_all({"cmap_recon"})
 
+    def test_convert(self):
+        self.check_all({"cmap_convert"})
+
     def test_every_program_has_a_page(self):
         """It shows how to call the program."""
         for name in NAMES:
@@ -399,6 +442,7 @@ class Examples(unittest.TestCase):
             examples = examples_of_help(program)
             self.assertGreater(len(examples), 0, program)
             folder = self.work_folder()
+            write_recording(folder)  # no recording is in the repository
             for example in examples:
                 with self.subTest(example.command):
                     for link in ("data_samples", "benchmarks"):

@@ -29,10 +29,10 @@ const EnumNames<RecordingRole>& recording_role_names();
 /// A photograph as it was recorded.
 struct RecordedImage {
   double time_s = 0.0;
-  std::string encoding;  ///< "jpeg" or "png", or what raw pixels are: rgb8, bgr8, mono8, bayer_rggb8, ...
-  int width = 0, height = 0;     ///< 0 where it is compressed
-  std::size_t row_bytes = 0;     ///< of a row of raw pixels with its padding
-  bool is_big_endian = false;    ///< of raw pixels of 16 bits
+  std::string encoding;        ///< "jpeg" or "png", or what raw pixels are: rgb8, bgr8, mono8, bayer_rggb8, ...
+  int width = 0, height = 0;   ///< 0 where it is compressed
+  std::size_t row_bytes = 0;   ///< of a row of raw pixels with its padding
+  bool is_big_endian = false;  ///< of raw pixels of 16 bits
   Array<std::byte> bytes;
 };
 
@@ -44,8 +44,8 @@ using RecordedMessage = std::variant<LidarScan, ImuSample, RecordedImage, Stampe
 /// A topic as its recording lists it.
 struct RecordingTopic {
   std::string name;
-  std::string type;                   ///< "sensor_msgs/Imu", also in ROS 2
-  std::string encoding;               ///< "ros1", "cdr"; messages of others are not understood
+  std::string type;      ///< "sensor_msgs/Imu", also in ROS 2
+  std::string encoding;  ///< "ros1", "cdr"; messages of others are not understood
   std::uint64_t n_messages = 0;
   std::optional<RecordingRole> role;  ///< what its messages can be for; none: stepped over
 };
@@ -69,7 +69,8 @@ struct RecordingSource {
 };
 
 struct RecordingOptions {
-  std::array<RecordingSource, kRecordingRoles> sources;
+  /// Odometry only if it is asked for: it is nobody's sensor.
+  std::array<RecordingSource, kRecordingRoles> sources = {RecordingSource{}, {}, {}, {Want::kNo, "", ""}};
   /// kAuto: of whole numbers nanoseconds, unless the field's name says otherwise (_us); of floating-point numbers the
   /// unit that makes them times within a scan, or near the stamp if they are times of a clock.
   PointTimeUnit point_time_unit = PointTimeUnit::kAuto;
@@ -129,7 +130,7 @@ struct RecordingConfiguration {
   std::vector<Warning> warnings;
 };
 
-/// Throws InputError naming file, key and reason.
-RecordingConfiguration read_recording_configuration(const std::filesystem::path& path);
+/// Throws InputError naming file, key and reason. Who needs no camera reads a rig of a LiDAR alone.
+RecordingConfiguration read_recording_configuration(const std::filesystem::path& path, bool needs_camera = true);
 
 }  // namespace cmap

@@ -4,6 +4,8 @@
 
 #include "bytes/csv_table.hpp"
 #include "captures/capture_json.hpp"
+#include "captures/capture_part.hpp"
+#include "captures/kitti_drive.hpp"
 #include "captures/session_files.hpp"
 #include "cmap/io/file_place.hpp"
 #include "cmap/io/session_file.hpp"
@@ -39,21 +41,6 @@ std::vector<StampedFile> read_file_table(const fs::path& folder, const char* nam
   });
   if (is_empty) source.fail("lists no file");
   return files;
-}
-
-/// Reads a part as far as it is wanted. What is wrong with one that only may be there are warnings.
-void read_part(Capture& capture, const char* name, Want want, const Faults& faults,
-               const std::function<void(const Faults&)>& read) {
-  if (want == Want::kYes) {
-    faults.attempt([&] { read(faults); });
-  } else if (want == Want::kIfUsable && is_there(capture.folder / name)) {
-    std::vector<std::string> found;
-    const Faults all(found);
-    all.attempt([&] { read(faults.goes_on() ? all : Faults()); });
-    for (const std::string& fault : found) {
-      capture.warnings.push_back({"part_left_out", fmt::format("{}; the run goes on without", fault)});
-    }
-  }
 }
 
 /// Drivers repeat stamps and hand samples on out of order: they are sorted, and of one time the first counts.
@@ -131,6 +118,7 @@ std::vector<fs::path> find_sessions(const fs::path& folder, std::vector<Warning>
 
 Capture open_capture(const fs::path& folder, const CaptureParts& parts, const Faults& faults) {
   if (!is_folder(folder)) throw InputError(folder.string() + ": is no folder; a capture expected");
+  if (is_kitti_drive(folder)) return open_kitti_drive(folder, parts, faults);
   Capture capture;
   capture.folder = folder;
   CaptureDescription description;

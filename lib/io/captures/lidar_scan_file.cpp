@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "captures/kitti_scan.hpp"
 #include "clouds/pcd/pcd_body.hpp"
 #include "cmap/io/number_text.hpp"
 #include "cmap/io/output_file.hpp"
@@ -178,6 +179,7 @@ std::string scan_header(const LidarScan& scan) {
 }  // namespace
 
 LidarScan read_lidar_scan(const std::filesystem::path& path, double timestamp_s) {
+  if (is_kitti_scan(path)) return read_kitti_scan(path, timestamp_s);
   ByteSource source(path);
   LineReader lines(source);
   FileInfo info;

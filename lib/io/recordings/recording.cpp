@@ -13,42 +13,6 @@
 
 namespace cmap {
 namespace fs = std::filesystem;
-namespace {
-
-
-std::vector<RecordingTopic> listed(const std::vector<StoredTopic>& stored) {
-  std::vector<RecordingTopic> topics;
-  for (const StoredTopic& topic : stored) {
-    const std::optional<MessageKind> kind = kind_of(topic);
-    topics.push_back({topic.name, short_type_name(topic.type), topic.encoding_name, topic.n_messages,
-                      kind ? role_of(*kind) : std::nullopt});
-  }
-  std::ranges::sort(topics, {}, &RecordingTopic::name);
-  return topics;
-}
-
-}  // namespace
-
-const EnumNames<RecordingRole>& recording_role_names() {
-  static const EnumNames<RecordingRole> names{{RecordingRole::kLidar, "lidar"},
-                                              {RecordingRole::kImu, "imu"},
-                                              {RecordingRole::kImage, "image"},
-                                              {RecordingRole::kOdometry, "odometry"}};
-  return names;
-}
-
-const EnumNames<PointTimeUnit>& point_time_unit_names() {
-  static const EnumNames<PointTimeUnit> names{{PointTimeUnit::kAuto, "auto"},
-                                              {PointTimeUnit::kSeconds, "s"},
-                                              {PointTimeUnit::kMilliseconds, "ms"},
-                                              {PointTimeUnit::kMicroseconds, "us"},
-                                              {PointTimeUnit::kNanoseconds, "ns"}};
-  return names;
-}
-
-std::vector<RecordingTopic> recording_topics(const fs::path& path) {
-  return listed(open_message_store(path)->topics());
-}
 
 struct Recording::State {
   /// What is read of a topic.
@@ -59,7 +23,7 @@ struct Recording::State {
   };
 
   State(const fs::path& recording, const RecordingOptions& options)
-      : path(recording), store(open_message_store(recording)), topics(listed(store->topics())) {
+      : path(recording), store(open_message_store(recording)), topics(listed_topics(store->topics())) {
     const std::vector<StoredTopic>& stored = store->topics();
     const TopicOfRole chosen = choose_topics(stored, options, path.string());
     std::vector<bool> is_wanted(stored.size(), false);
@@ -159,9 +123,10 @@ std::vector<Warning> Recording::warnings() const {
   for (std::size_t i = 0; i < state_->readers.size(); ++i) {
     const auto& reader = state_->readers[i];
     if (!reader || reader->n_without_reference == 0) continue;
-    warnings.push_back({"no_time_reference",
-                        fmt::format("{}: {} messages of {} have no time reference and were left out", state_->path.string(),
-                                    reader->n_without_reference, state_->store->topics()[i].name)});
+    warnings.push_back(
+        {"no_time_reference",
+         fmt::format("{}: {} messages of {} have no time reference and were left out", state_->path.string(),
+                     reader->n_without_reference, state_->store->topics()[i].name)});
   }
   return warnings;
 }

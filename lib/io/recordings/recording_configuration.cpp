@@ -36,6 +36,9 @@ PointTimeUnit unit_of(const Json& json) {
 void read_recording(const Json& json, RecordingOptions& options) {
   check_keys(json, "recording", {}, {"topics", "time_reference", "point_time_unit"});
   if (json.contains("topics")) read_names(json["topics"], "recording.topics", options, &RecordingSource::topic);
+  for (RecordingSource& source : options.sources) {
+    if (!source.topic.empty()) source.want = Want::kYes;
+  }
   if (json.contains("time_reference")) {
     read_names(json["time_reference"], "recording.time_reference", options, &RecordingSource::time_reference);
   }
@@ -44,7 +47,7 @@ void read_recording(const Json& json, RecordingOptions& options) {
 
 }  // namespace
 
-RecordingConfiguration read_recording_configuration(const std::filesystem::path& path) {
+RecordingConfiguration read_recording_configuration(const std::filesystem::path& path, bool needs_camera) {
   RecordingConfiguration configuration;
   Json calibration;
   bool names_unit = false;
@@ -56,7 +59,7 @@ RecordingConfiguration read_recording_configuration(const std::filesystem::path&
     read_recording(json["recording"], configuration.options);
     calibration.erase("recording");
   });
-  CaptureDescription description = parse_capture_json(calibration.dump(), path.string());
+  CaptureDescription description = parse_capture_json(calibration.dump(), path.string(), {}, needs_camera);
   configuration.calibration = description.calibration;
   configuration.warnings = std::move(description.warnings);
   if (names_unit) {

@@ -45,7 +45,8 @@ std::optional<MessageKind> kind_of(const StoredTopic& topic) {
 
 std::size_t topic_of_name(const std::vector<StoredTopic>& topics, const std::string& topic, const std::string& name) {
   const auto found = std::ranges::find(topics, topic, &StoredTopic::name);
-  if (found == topics.end()) throw InputError(fmt::format("{}: no topic {}; there is {}", name, topic, list_of(topics)));
+  if (found == topics.end())
+    throw InputError(fmt::format("{}: no topic {}; there is {}", name, topic, list_of(topics)));
   return static_cast<std::size_t>(found - topics.begin());
 }
 

@@ -81,7 +81,8 @@ class Unpacking {
     warn_of(rest.size(), fmt::format("{} of a time that another has", what));
     values.erase(rest.begin(), rest.end());
     if (is_sorted) return;
-    found_.warnings.push_back({"sorted_by_time", fmt::format("{}: {} were not in the order of their times, and were sorted", name_, what)});
+    found_.warnings.push_back(
+        {"sorted_by_time", fmt::format("{}: {} were not in the order of their times, and were sorted", name_, what)});
   }
 
   void warn_of(std::size_t n, const std::string& what) {
@@ -102,9 +103,7 @@ class Unpacking {
 
 UnpackedRecording unpack_recording(const fs::path& recording, const RecordingConfiguration& configuration,
                                    const fs::path& capture, const RecordingPart& part) {
-  RecordingOptions options = configuration.options;
-  RecordingSource& odometry = options.source(RecordingRole::kOdometry);
-  if (odometry.topic.empty()) odometry.want = Want::kNo;
+  const RecordingOptions& options = configuration.options;
   Recording source(recording, options);
   Unpacking unpacking(recording, configuration.calibration, capture);
   std::optional<double> first_s;
@@ -121,7 +120,8 @@ UnpackedRecording unpack_recording(const fs::path& recording, const RecordingCon
   found.warnings.insert(found.warnings.begin(), said.begin(), said.end());
   found.warnings.insert(found.warnings.begin(), configuration.warnings.begin(), configuration.warnings.end());
   if (source.has_acceleration_in_g() && options.acceleration_unit == AccelerationUnit::kAuto) {
-    found.warnings.push_back({"acceleration_in_g", fmt::format("{}: accelerations are about 1, so they are taken for g", recording.string())});
+    found.warnings.push_back({"acceleration_in_g", fmt::format("{}: accelerations are about 1, so they are taken for g",
+                                                               recording.string())});
   }
   return found;
 }

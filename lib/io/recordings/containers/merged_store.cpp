@@ -46,7 +46,8 @@ class MergedStore : public MessageStore {
     }
     last_ = nullptr;
     for (Part& part : parts_) {
-      if (part.has_message && (last_ == nullptr || part.message.log_time_ns < last_->message.log_time_ns)) last_ = &part;
+      if (part.has_message && (last_ == nullptr || part.message.log_time_ns < last_->message.log_time_ns))
+        last_ = &part;
     }
     if (last_ == nullptr) return false;
     message = last_->message;

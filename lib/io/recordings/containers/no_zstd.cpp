@@ -4,7 +4,8 @@
 namespace cmap {
 
 std::size_t unpack_zstd(std::span<const std::byte>, std::span<std::byte>) {
-  throw UnsupportedError("compression \"zstd\": this build of cmap is without it (apt-get install libzstd-dev, and build again)");
+  throw UnsupportedError(
+      "compression \"zstd\": this build of cmap is without it (apt-get install libzstd-dev, and build again)");
 }
 
 }  // namespace cmap

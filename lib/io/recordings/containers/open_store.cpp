@@ -28,7 +28,8 @@ std::string_view text_of(std::span<const std::byte> bytes) {
 Container container_of(std::string_view start) {
   if (start.starts_with(kRos1Magic)) return Container::kRos1;
   if (start.starts_with(mcap::kMagic)) return Container::kMcap;
-  const bool has_tables = start.find("messages(") != std::string_view::npos || start.find("messages (") != std::string_view::npos;
+  const bool has_tables =
+      start.find("messages(") != std::string_view::npos || start.find("messages (") != std::string_view::npos;
   if (start.starts_with(kSqliteMagic) && has_tables) return Container::kSqlite;
   return Container::kNone;
 }
@@ -50,7 +51,8 @@ std::unique_ptr<MessageStore> open_file(const fs::path& path) {
       break;
   }
   if (start.starts_with(kZstdMagic)) {
-    throw UnsupportedError(path.string() + ": a file packed by zstd as a whole; unpack it first (zstd -d), or `ros2 bag convert`");
+    throw UnsupportedError(path.string() +
+                           ": a file packed by zstd as a whole; unpack it first (zstd -d), or `ros2 bag convert`");
   }
   source->fail("is no recording (a ROS 1 bag, MCAP, or SQLite with the tables of rosbag2)");
 }
@@ -60,9 +62,10 @@ std::unique_ptr<MessageStore> open_folder(const fs::path& folder) {
   const Rosbag2Metadata metadata = read_rosbag2_metadata(path);
   // Messages that are packed one by one are told by how they begin.
   if (metadata.compression_mode == "FILE" || metadata.compression_mode == "file") {
-    throw UnsupportedError(fmt::format("{}: files packed by {} as a whole are not read; `ros2 bag convert` unpacks them, and "
-                                       "MCAP's own compression is read",
-                                       path.string(), metadata.compression));
+    throw UnsupportedError(
+        fmt::format("{}: files packed by {} as a whole are not read; `ros2 bag convert` unpacks them, and "
+                    "MCAP's own compression is read",
+                    path.string(), metadata.compression));
   }
   std::vector<std::unique_ptr<MessageStore>> parts;
   for (const fs::path& file : metadata.files) parts.push_back(open_file(file));

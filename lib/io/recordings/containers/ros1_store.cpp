@@ -25,7 +25,8 @@ auto translated(const std::string& place, Call&& call) {
   } catch (const Error&) {
     throw;
   } catch (const rosbag::BagUnindexedException&) {
-    throw InputError(place + ": the bag is not indexed, as after a recording that did not end: `rosbag reindex` mends it");
+    throw InputError(place +
+                     ": the bag is not indexed, as after a recording that did not end: `rosbag reindex` mends it");
   } catch (const std::bad_alloc&) {
     throw InputError(place + ": sizes that cannot be");
   } catch (const std::exception& error) {

@@ -8,7 +8,7 @@ namespace cmap {
 
 /// What a metadata.yaml of rosbag2 says that one must know to read the files.
 struct Rosbag2Metadata {
-  std::vector<std::filesystem::path> files;         ///< in their order, ready to open
+  std::vector<std::filesystem::path> files;            ///< in their order, ready to open
   std::string storage, compression, compression_mode;  ///< empty: not said
 };
 

@@ -11,8 +11,8 @@ namespace cmap {
 /// UnsupportedError where this build is without zstd.
 std::size_t unpack_zstd(std::span<const std::byte> packed, std::span<std::byte> out);
 
-/// A message as it was sent: rosbag2 can pack each by itself, which no container says, but a message of CDR never begins
-/// as a frame of zstd does. Unpacked into `room`, or where it is.
+/// A message as it was sent: rosbag2 can pack each by itself, which no container says, but a message of CDR never
+/// begins as a frame of zstd does. Unpacked into `room`, or where it is.
 std::span<const std::byte> sent_message(std::span<const std::byte> stored, Array<std::byte>& room);
 
 }  // namespace cmap

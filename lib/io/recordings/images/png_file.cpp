@@ -39,7 +39,8 @@ std::string packed_rows(const RgbImage& image) {
   }
   uLongf size = ::compressBound(rows.size());
   std::string packed(size, '\0');
-  if (::compress2(reinterpret_cast<Bytef*>(packed.data()), &size, rows.data(), rows.size(), 1) != Z_OK) throw std::bad_alloc();
+  if (::compress2(reinterpret_cast<Bytef*>(packed.data()), &size, rows.data(), rows.size(), 1) != Z_OK)
+    throw std::bad_alloc();
   packed.resize(size);
   return packed;
 }
@@ -49,7 +50,8 @@ std::string packed_rows(const RgbImage& image) {
 void write_png(const RgbImage& image, const std::filesystem::path& path) {
   OutputFile file(path);
   file.write("\x89PNG\r\n\x1A\n");
-  const std::string size = big_endian(static_cast<std::uint32_t>(image.width)) + big_endian(static_cast<std::uint32_t>(image.height));
+  const std::string size =
+      big_endian(static_cast<std::uint32_t>(image.width)) + big_endian(static_cast<std::uint32_t>(image.height));
   write_chunk(file, "IHDR", size + std::string("\x08\x02\x00\x00\x00", 5));
   write_chunk(file, "IDAT", packed_rows(image));
   write_chunk(file, "IEND", "");

@@ -39,13 +39,16 @@ std::optional<std::array<int, 4>> bayer_of(const std::string& name) {
 }
 
 std::uint8_t byte_at(const RecordedImage& image, int x, int y) {
-  return std::to_integer<std::uint8_t>(image.bytes[static_cast<std::size_t>(y) * image.row_bytes + static_cast<std::size_t>(x)]);
+  return std::to_integer<std::uint8_t>(
+      image.bytes[static_cast<std::size_t>(y) * image.row_bytes + static_cast<std::size_t>(x)]);
 }
 
 /// Of each color the mean over the pixel and those around it that have it, itself first.
 Rgb8 interpolated(const RecordedImage& image, const std::array<int, 4>& colors, int x, int y) {
   std::array<int, 3> sum{}, n{};
-  const auto color_at = [&](int u, int v) { return static_cast<std::size_t>(colors[static_cast<std::size_t>(2 * (v & 1) + (u & 1))]); };
+  const auto color_at = [&](int u, int v) {
+    return static_cast<std::size_t>(colors[static_cast<std::size_t>(2 * (v & 1) + (u & 1))]);
+  };
   for (int v = std::max(0, y - 1); v <= std::min(image.height - 1, y + 1); ++v) {
     for (int u = std::max(0, x - 1); u <= std::min(image.width - 1, x + 1); ++u) {
       const std::size_t color = color_at(u, v);
@@ -64,7 +67,8 @@ Rgb8 interpolated(const RecordedImage& image, const std::array<int, 4>& colors, 
 
 void require_rows(const RecordedImage& image, std::size_t pixel_bytes) {
   if (image.row_bytes >= static_cast<std::size_t>(image.width) * pixel_bytes) return;
-  throw InputError(fmt::format("rows of {} bytes do not hold {} pixels of {}", image.row_bytes, image.width, image.encoding));
+  throw InputError(
+      fmt::format("rows of {} bytes do not hold {} pixels of {}", image.row_bytes, image.width, image.encoding));
 }
 
 }  // namespace
@@ -87,7 +91,8 @@ RgbImage rgb_of_raw(const RecordedImage& image) {
         continue;
       }
       const int first = x * static_cast<int>(layout->bytes);
-      for (std::size_t k = 0; k < 3; ++k) rgb.at(x, y)[k] = byte_at(image, first + static_cast<int>(layout->place[k]), y);
+      for (std::size_t k = 0; k < 3; ++k)
+        rgb.at(x, y)[k] = byte_at(image, first + static_cast<int>(layout->place[k]), y);
     }
   }
   return rgb;

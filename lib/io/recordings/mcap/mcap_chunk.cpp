@@ -58,6 +58,10 @@ std::span<const std::byte> unpack_chunk(const ChunkStart& start, std::span<const
   }
   std::span<const std::byte> records = packed;
   if (!start.compression.empty()) {
+    constexpr std::uint64_t kMostOfLz4 = 255;
+    if (start.compression == "lz4" && start.uncompressed_bytes / kMostOfLz4 > packed.size()) {
+      throw InputError(fmt::format("{} bytes of lz4 cannot unpack to {}", packed.size(), start.uncompressed_bytes));
+    }
     room.clear();
     room.resize(start.uncompressed_bytes);
     records = std::span(room).first(unpack(start.compression, packed, room));

@@ -1,8 +1,7 @@
 #include "recordings/mcap/mcap_layout.hpp"
 
 #include "cmap/core/execution.hpp"
-#include "recordings/mcap/crc32.hpp"
-#include "recordings/mcap/mcap_chunk.hpp"
+#include "recordings/mcap/file_window.hpp"
 
 namespace cmap::mcap {
 namespace {
@@ -14,49 +13,12 @@ struct Record {
   std::uint64_t end() const { return place + kRecordStart + length; }
 };
 
-/// Reads the beginnings of records through a small window, as chunks are stepped over.
-class Walk {
- public:
-  explicit Walk(const ByteSource& source) : source_(source) {}
-
-  /// The next n bytes at a place, fewer at the end of the file; valid until the next call.
-  std::span<const std::byte> look(std::uint64_t place, std::size_t n) {
-    if (place < begin_ || place + n > begin_ + filled_) {
-      if (window_.size() < n) window_.resize(n);
-      begin_ = place;
-      filled_ = source_.read_at(place, window_);
-    }
-    const std::uint64_t from = place - begin_;
-    return std::span(window_).first(filled_).subspan(std::min<std::uint64_t>(from, filled_),
-                                                     std::min<std::uint64_t>(n, filled_ - std::min<std::uint64_t>(from, filled_)));
-  }
-
- private:
-  const ByteSource& source_;
-  std::vector<std::byte> window_ = std::vector<std::byte>(4096);
-  std::uint64_t begin_ = 0;
-  std::size_t filled_ = 0;
-};
-
-/// The checksum of a part of the file.
-std::uint32_t crc_of_file(const ByteSource& source, std::uint64_t begin, std::uint64_t end) {
-  Array<std::byte> block(std::size_t{1} << 20);
-  std::uint32_t crc = 0;
-  while (begin < end) {
-    const std::size_t n = source.read_at(begin, std::span(block).first(std::min<std::uint64_t>(block.size(), end - begin)));
-    if (n == 0) break;
-    crc = crc32_of(std::span(block).first(n), crc);
-    begin += n;
-  }
-  return crc;
-}
-
 class LayoutReader {
  public:
-  explicit LayoutReader(const ByteSource& source) : source_(source), walk_(source) {}
+  explicit LayoutReader(const ByteSource& source) : source_(source), window_(source) {}
 
   Layout read() {
-    const std::span<const std::byte> magic = walk_.look(0, kMagic.size());
+    const std::span<const std::byte> magic = window_.look(0, kMagic.size());
     if (std::string_view(reinterpret_cast<const char*>(magic.data()), magic.size()) != kMagic) {
       source_.fail("is no MCAP file");
     }
@@ -75,7 +37,7 @@ class LayoutReader {
  private:
   std::optional<Record> record_at(std::uint64_t place) {
     throw_if_stopped();
-    const std::span<const std::byte> start = walk_.look(place, kRecordStart);
+    const std::span<const std::byte> start = window_.look(place, kRecordStart);
     if (start.size() < kRecordStart) {
       layout_.fault = fmt::format("truncated: the file ends at byte {} without a footer", source_.size());
       return std::nullopt;
@@ -88,15 +50,15 @@ class LayoutReader {
       return std::nullopt;
     }
     if (record.length > source_.size() - place - kRecordStart) {
-      layout_.fault = fmt::format("truncated: the record at byte {} takes {} bytes, but the file ends at byte {}", place,
-                                  record.length, source_.size());
+      layout_.fault = fmt::format("truncated: the record at byte {} takes {} bytes, but the file ends at byte {}",
+                                  place, record.length, source_.size());
       return std::nullopt;
     }
     return record;
   }
 
   std::span<const std::byte> body(const Record& record, std::uint64_t most) {
-    return walk_.look(record.place + kRecordStart, std::min(record.length, most));
+    return window_.look(record.place + kRecordStart, std::min(record.length, most));
   }
 
   void take(const Record& record) {
@@ -172,13 +134,13 @@ class LayoutReader {
   }
 
   void check_end(std::uint64_t place) {
-    const std::span<const std::byte> magic = walk_.look(place, kMagic.size());
+    const std::span<const std::byte> magic = window_.look(place, kMagic.size());
     if (std::string_view(reinterpret_cast<const char*>(magic.data()), magic.size()) == kMagic) return;
     if (layout_.fault.empty()) layout_.fault = fmt::format("truncated: no end mark at byte {}", place);
   }
 
   const ByteSource& source_;
-  Walk walk_;
+  FileWindow window_;
   Layout layout_;
   std::uint64_t data_end_ = 0;
   bool is_all_covered_ = true;  ///< by checksums of chunks

@@ -16,19 +16,19 @@ struct Run {
   bool is_chunk = false;
 };
 
-/// What a walk over the records of a file finds, from the first to the last, stepping over messages and chunks: no index
-/// is needed.
+/// What a walk over the records of a file finds, from the first to the last, stepping over messages and chunks: no
+/// index is needed.
 struct Layout {
-  std::vector<Run> runs;  ///< as they stand in the file
-  Channels channels;      ///< those within chunks only where they are repeated outside
+  std::vector<Run> runs;                            ///< as they stand in the file
+  Channels channels;                                ///< those within chunks only where they are repeated outside
   std::map<std::uint16_t, std::uint64_t> messages;  ///< of messages outside of chunks
   std::optional<std::map<std::uint16_t, std::uint64_t>> statistics;
   /// Why the file is not whole; empty: it is. What stands before can be read.
   std::string fault;
 };
 
-/// Throws InputError where it is no MCAP file, or where messages that no chunk's checksum covers are not what the file's
-/// checksum says.
+/// Throws InputError where it is no MCAP file, or where messages that no chunk's checksum covers are not what the
+/// file's checksum says.
 Layout read_layout(const ByteSource& source);
 
 /// Calls use(opcode, body, place) for each record in some bytes; place is of the record within them. Throws InputError

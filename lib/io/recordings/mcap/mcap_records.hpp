@@ -25,9 +25,9 @@ enum Opcode : std::uint8_t {
   kDataEnd = 15
 };
 
-inline constexpr std::size_t kRecordStart = 9;     ///< opcode and length
-inline constexpr std::size_t kMessageStart = 22;   ///< of its body: channel, sequence, both times
-inline constexpr std::size_t kFooterBytes = 20;    ///< of its body
+inline constexpr std::size_t kRecordStart = 9;    ///< opcode and length
+inline constexpr std::size_t kMessageStart = 22;  ///< of its body: channel, sequence, both times
+inline constexpr std::size_t kFooterBytes = 20;   ///< of its body
 
 struct Channel {
   std::uint16_t schema = 0;

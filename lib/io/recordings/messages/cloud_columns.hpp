@@ -9,8 +9,8 @@
 
 namespace cmap {
 
-/// Calls run(first, n, begin) for runs of points that lie point_step apart: n of them from byte `first` on, the first of
-/// which is point `begin`.
+/// Calls run(first, n, begin) for runs of points that lie point_step apart: n of them from byte `first` on, the first
+/// of which is point `begin`.
 template <class Run>
 void for_each_run(const PointCloud2& cloud, Run&& run) {
   const std::size_t row_bytes = std::size_t{cloud.width} * cloud.point_step;

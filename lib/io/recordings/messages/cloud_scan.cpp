@@ -64,8 +64,8 @@ void read_intensity(const PointCloud2& cloud, Columns& columns) {
 }
 
 void read_times(const PointCloud2& cloud, PointTimes& times, Columns& columns) {
-  const CloudField* field = cloud.find({"time", "t", "timestamp", "time_stamp", "offset_time", "time_offset",
-                                        "point_time_offset", "t_us", "time_us"});
+  const CloudField* field = cloud.find(
+      {"time", "t", "timestamp", "time_stamp", "offset_time", "time_offset", "point_time_offset", "t_us", "time_us"});
   if (field == nullptr) return;
   Array<double> values(cloud.n_points());
   for_each_number(cloud, *field, [&](std::size_t i, auto value) { values[i] = static_cast<double>(value); });
@@ -86,9 +86,8 @@ void read_rings(const PointCloud2& cloud, Columns& columns) {
   const CloudField* field = cloud.find({"ring", "channel", "line", "laser_id"});
   if (field == nullptr || is_floating(field->type)) return;
   columns.scan.ring.resize(cloud.n_points());
-  for_each_number(cloud, *field, [&](std::size_t i, auto value) {
-    columns.scan.ring[i] = static_cast<std::uint16_t>(value);
-  });
+  for_each_number(cloud, *field,
+                  [&](std::size_t i, auto value) { columns.scan.ring[i] = static_cast<std::uint16_t>(value); });
 }
 
 void read_tags(const PointCloud2& cloud, Columns& columns) {

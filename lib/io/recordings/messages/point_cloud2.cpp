@@ -39,7 +39,8 @@ void check_layout(const WireReader& reader, PointCloud2& cloud) {
     cloud.height = cloud.width = 0;
     return;
   }
-  const std::uint64_t most_rows = (cloud.data.size() + (cloud.row_step - row_bytes)) / std::max<std::size_t>(cloud.row_step, 1);
+  const std::uint64_t most_rows =
+      (cloud.data.size() + (cloud.row_step - row_bytes)) / std::max<std::size_t>(cloud.row_step, 1);
   if (cloud.point_step == 0 || cloud.height > most_rows) {
     reader.fail("{} x {} points of {} bytes in rows of {} do not fit into {} bytes of data", cloud.height, cloud.width,
                 cloud.point_step, cloud.row_step, cloud.data.size());

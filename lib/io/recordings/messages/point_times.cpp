@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "cmap/core/error.hpp"
 
@@ -29,12 +30,21 @@ double seconds_of(PointTimeUnit unit) {
   }
 }
 
+/// The largest size of the values that are finite.
 double largest(std::span<const double> values) {
   double most = 0.0;
   for (const double value : values) {
     if (std::isfinite(value)) most = std::max(most, std::abs(value));
   }
   return most;
+}
+
+/// Whether all values, but those that are not finite, are so small. Without a maximum, each of which waits for the
+/// last.
+bool are_within(std::span<const double> values, double most) {
+  std::size_t n_beyond = 0;
+  for (const double value : values) n_beyond += std::abs(value) > most ? 1U : 0U;
+  return n_beyond == 0 || largest(values) <= most;
 }
 
 /// Whole numbers: nanoseconds, as Ouster's t and nebula's time_stamp, unless the name ends in another unit.
@@ -47,7 +57,8 @@ PointTimeUnit unit_of_name(std::string_view field) {
 /// Floating-point offsets: no scan takes 3 s, and none is as short as 3 ms.
 PointTimeUnit unit_of_size(double most) {
   constexpr double kLongest_s = 3.0;
-  for (const PointTimeUnit unit : {PointTimeUnit::kSeconds, PointTimeUnit::kMilliseconds, PointTimeUnit::kMicroseconds}) {
+  for (const PointTimeUnit unit :
+       {PointTimeUnit::kSeconds, PointTimeUnit::kMilliseconds, PointTimeUnit::kMicroseconds}) {
     if (most * seconds_of(unit) <= kLongest_s) return unit;
   }
   return PointTimeUnit::kNanoseconds;
@@ -77,16 +88,17 @@ void PointTimes::decide(std::span<const double> values, std::string_view field, 
 void PointTimes::to_offsets(std::span<double> values, std::string_view field, ScalarType type, std::int64_t stamp_ns) {
   if (!is_decided_) decide(values, field, type, 1e-9 * static_cast<double>(stamp_ns));
   const double unit_s = seconds_of(unit_);
-  const double zero = is_clock_ ? static_cast<double>(stamp_ns) * (1e-9 / unit_s) : 0.0;
-  double most = 0.0;
-  for (double& value : values) {
-    value = (value - zero) * unit_s;
-    most = std::max(most, std::isfinite(value) ? std::abs(value) : 0.0);
+  const double zero = static_cast<double>(stamp_ns) * (1e-9 / unit_s);
+  if (is_clock_) {
+    // What drivers fill up a message with has no time.
+    for (double& value : values) value = value == 0.0 ? std::numeric_limits<double>::quiet_NaN() : value - zero;
   }
-  if (most <= kFarthest_s) return;
-  throw InputError(fmt::format("the field '{}' holds times {:g} s from the stamp, in {}; at most {:g} s expected. Is the unit "
-                               "another (recording.point_time_unit)?",
-                               field, most, name_of(unit_, point_time_unit_names()), kFarthest_s));
+  for (double& value : values) value *= unit_s;
+  if (are_within(values, kFarthest_s)) return;
+  throw InputError(
+      fmt::format("the field '{}' holds times {:g} s from the stamp, in {}; at most {:g} s expected. Is the unit "
+                  "another (recording.point_time_unit)?",
+                  field, largest(values), name_of(unit_, point_time_unit_names()), kFarthest_s));
 }
 
 }  // namespace cmap

@@ -16,8 +16,8 @@ class PointTimes {
  public:
   explicit PointTimes(PointTimeUnit unit = PointTimeUnit::kAuto) : unit_(unit) {}
 
-  /// Turns values, some of which may not be finite, into seconds from the stamp. Throws InputError where they cannot be
-  /// times of one scan, whatever the unit.
+  /// Turns values, some of which may not be finite, into seconds from the stamp; where they are of a clock, 0 is none
+  /// of them and becomes NaN. Throws InputError where they cannot be times of one scan, whatever the unit.
   void to_offsets(std::span<double> values, std::string_view field, ScalarType type, std::int64_t stamp_ns);
 
  private:

@@ -50,8 +50,8 @@ RecordedImage read_image_message(WireReader& reader) {
     reader.fail("an image of {} x {} pixels", width, height);
   }
   if (image.row_bytes < width || height > data.size() / image.row_bytes) {
-    reader.fail("{} rows of {} bytes do not fit into {}, or do not hold {} pixels", height, image.row_bytes, data.size(),
-                width);
+    reader.fail("{} rows of {} bytes do not fit into {}, or do not hold {} pixels", height, image.row_bytes,
+                data.size(), width);
   }
   image.height = static_cast<int>(height);
   image.width = static_cast<int>(width);

@@ -45,9 +45,10 @@ struct Packet {
 void check_packet(const WireReader& reader, std::span<const std::byte> bytes) {
   const auto product = std::to_integer<unsigned>(bytes[kProduct]);
   if (product != kVlp16) {
-    throw UnsupportedError(fmt::format("packets of a Velodyne sensor 0x{:02x}; those of a VLP-16 (0x22) are understood. The "
-                                       "driver's sensor_msgs/PointCloud2 is read of every sensor",
-                                       product));
+    throw UnsupportedError(
+        fmt::format("packets of a Velodyne sensor 0x{:02x}; those of a VLP-16 (0x22) are understood. The "
+                    "driver's sensor_msgs/PointCloud2 is read of every sensor",
+                    product));
   }
   for (std::size_t block = 0; block < kBlocks; ++block) {
     if (load_little<std::uint16_t>(bytes, block * kBlockBytes) != 0xEEFF) reader.fail("a block without its flag");
@@ -64,9 +65,9 @@ void add_shot(const Packet& packet, std::size_t block, std::size_t shot, LidarSc
   constexpr double kDegree = std::numbers::pi / 180.0;
   const double azimuth = 0.01 * azimuth_cdeg * kDegree, elevation = elevation_deg(laser) * kDegree;
   const double range_m = kDistanceUnit_m * distance, level_m = range_m * std::cos(elevation);
-  scan.positions.push_back(Eigen::Vector3d(level_m * std::cos(azimuth), -level_m * std::sin(azimuth),
-                                           range_m * std::sin(elevation))
-                               .cast<float>());
+  scan.positions.push_back(
+      Eigen::Vector3d(level_m * std::cos(azimuth), -level_m * std::sin(azimuth), range_m * std::sin(elevation))
+          .cast<float>());
   scan.intensity.push_back(packet.intensity(block, shot));
   scan.time_s.push_back(static_cast<float>(packet.time_s + after_s +
                                            kFiring_s * static_cast<double>(kFirings * (block / packet.returns()))));

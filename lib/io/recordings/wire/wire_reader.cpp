@@ -50,7 +50,8 @@ std::int64_t WireReader::time_ns() {
   const auto nanoseconds = number<std::uint32_t>();
   constexpr std::uint32_t kNanosecondsPerSecond = 1'000'000'000;
   if (nanoseconds >= kNanosecondsPerSecond) fail("a time with {} nanoseconds", nanoseconds);
-  const std::int64_t signed_seconds = is_ros1_ ? std::int64_t{seconds} : std::int64_t{static_cast<std::int32_t>(seconds)};
+  const std::int64_t signed_seconds =
+      is_ros1_ ? std::int64_t{seconds} : std::int64_t{static_cast<std::int32_t>(seconds)};
   return signed_seconds * kNanosecondsPerSecond + nanoseconds;
 }
 

@@ -69,8 +69,7 @@ class WireReader {
 
   template <class... Args>
   [[noreturn]] void fail(fmt::format_string<Args...> reason, Args&&... args) const {
-    throw InputError(fmt::format("byte {}: ", position_) +
-                     fmt::format(reason, std::forward<Args>(args)...));
+    throw InputError(fmt::format("byte {}: ", position_) + fmt::format(reason, std::forward<Args>(args)...));
   }
 
  private:
