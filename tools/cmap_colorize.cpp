@@ -10,6 +10,7 @@
 
 #include "cmap/colorize/colorize.hpp"
 #include "cmap/colorize/colorize_report.hpp"
+#include "cmap/colorize/refine_extrinsic.hpp"
 #include "cmap/colorize/scan_map.hpp"
 #include "cmap/core/execution.hpp"
 #include "cmap/core/progress.hpp"
@@ -86,6 +87,8 @@ void add_options(cmap::CommandLine& line, Arguments& a) {
       .values(3, 3);
   line.add("--time-offset", a.time_offset_s, "S", "added to the images' times, beside the capture's own [0]")
       .between(-1e6, 1e6);
+  line.add_flag("--refine-extrinsic", a.refine, "check");
+  line.add("--extrinsic-output", a.refined, "FILE", "x").not_empty();
   line.add("--set", a.settings, "NAME=VALUE", "one option by its name; may be repeated").one_at_a_time().not_empty();
   line.add_flag("--print-options", a.print_options, "all options as JSON, and nothing else");
   line.add("--json", a.json, "FILE", "everything about the result, to write").not_empty();
@@ -202,6 +205,10 @@ ExitCode run(const Arguments& a, const std::string& command) {
   input.n_without_pose = posed.n_without_pose;
   input.T_lidar_camera = posed.images.T_lidar_camera;
   const cmap::PointCloud map = map_of(a, capture, poses, input);
+  if (a.refine) {
+    const auto r = cmap::refine_extrinsic(map, posed.images, options);
+    fmt::print("turn {} {} {} deg +- {} {} {}\nshift {} {} {} m +- {} {} {}\ninc {} -> {}  images {} points {} views {} free {} {}\n", r.turn_deg.x(), r.turn_deg.y(), r.turn_deg.z(), r.turn_sigma_deg.x(),r.turn_sigma_deg.y(),r.turn_sigma_deg.z(), r.shift_m.x(), r.shift_m.y(), r.shift_m.z(), r.shift_sigma_m.x(),r.shift_sigma_m.y(),r.shift_sigma_m.z(), r.inconsistency_before,r.inconsistency_after,r.n_images,r.n_points,r.n_views,r.free_axes.size(), fmt::join(r.free_axes,","));
+  }
   const cmap::Colorization result = cmap::colorize(map, posed.images, options);
   cmap::OutputFiles files;
   files.add(a.output, [&](cmap::OutputFile& file) { cmap::write_ply(file, map_to_write(a, result)); });
