@@ -76,6 +76,7 @@ TEST(DepthBuffer, OfALargeImageHasFewerPixels) {
 }
 
 /// Ground from 1.5 m above it, out to where it is seen at 3 degrees: squares of one depth would hide most of it.
+/// Noise of a centimeter hides a tenth, where a ray runs 20 cm between them.
 TEST(DepthBuffer, FlatGroundDoesNotHideItself) {
   std::mt19937 random(1);
   std::normal_distribution<double> noise(0.0, 0.01);
@@ -92,7 +93,7 @@ TEST(DepthBuffer, FlatGroundDoesNotHideItself) {
     n_inside += 1.0;
     n_seen += seen[i] ? 1.0 : 0.0;
   }
-  EXPECT_GT(n_seen / n_inside, 0.97);
+  EXPECT_GT(n_seen / n_inside, 0.85);
 }
 
 /// Boards here and there, facing anywhere.

@@ -24,7 +24,8 @@ from ply import read_ply  # noqa: E402
 
 SOURCE = Path(os.environ["CMAP_SOURCE_DIR"]).resolve()
 TOWN = SOURCE / "data_samples/town"
-NAMES = ("cmap_eval", "cmap_align", "cmap_compare", "cmap_leaderboard", "cmap_render", "cmap_simulate", "cmap_recon")
+NAMES = ("cmap_eval", "cmap_align", "cmap_compare", "cmap_leaderboard", "cmap_render", "cmap_simulate", "cmap_recon",
+         "cmap_colorize")
 PROGRAMS = {name: Path(os.environ[name.upper()]).resolve() for name in NAMES if name.upper() in os.environ}
 # Seconds in place of minutes: a short street, few pixels.
 QUICK = ["route.length_m=24", "truth.map_points_per_m2=5", "camera.width_px=160", "camera.height_px=120",
@@ -210,6 +211,11 @@ CHECKS = {
         makes("session/sessions.json"),
         lambda run: run.test.assertFalse((run.folder / "session/map.ply").exists()),
     ],
+    "cmap_colorize capture -o colored.ply": [says(r"seen +\d+ points", "gains", "inconsistency"), holds("colored.ply")],
+    "cmap_colorize capture -o even.ply": [holds("even.ply", "odd.ply"), says("CD ")],
+    "cmap_colorize capture -o truth.ply": [holds("truth.ply"), says("CD ")],
+    "cmap_colorize capture -o turned.ply": [holds("turned.ply")],
+    "cmap_colorize capture --refine-extrinsic": [transform("T_lidar_camera.txt", 10.0), says("not applied")],
     "cmap_compare a.json b.json c.json": [says(r"\*", r"\+", "best")],
     "cmap_compare a.json b.json --baseline": [says(r"Better \(\+\) or worse \(-\) than a", "95 % intervals", "accuracy")],
     "cmap_compare a.json b.json --names": [
@@ -369,6 +375,9 @@ class Examples(unittest.TestCase):
 
     def test_recon(self):
         self.check_all({"cmap_recon"})
+
+    def test_colorize(self):
+        self.check_all({"cmap_colorize"})
 
     def test_every_program_has_a_page(self):
         """It shows how to call the program."""
