@@ -211,7 +211,7 @@ CHECKS = {
         makes("session/sessions.json"),
         lambda run: run.test.assertFalse((run.folder / "session/map.ply").exists()),
     ],
-    "cmap_colorize capture -o colored.ply": [says(r"seen +\d+ points", "gains", "inconsistency"), holds("colored.ply")],
+    "cmap_colorize capture -o colored.ply": [holds("colored.ply"), says(r"seen +\d+ points", "gains", "inconsistency")],
     "cmap_colorize capture -o even.ply": [holds("even.ply", "odd.ply"), says("CD ")],
     "cmap_colorize capture -o truth.ply": [holds("truth.ply"), says("CD ")],
     "cmap_colorize capture -o turned.ply": [holds("turned.ply")],
