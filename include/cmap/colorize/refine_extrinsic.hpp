@@ -46,9 +46,9 @@ struct RefinedExtrinsic {
 /// Reconstruction with Consumer Depth Cameras"). Which image sees which point is decided anew at every level, as in
 /// colorize(). Standard deviations take it that views of one surface can be aligned to alignment_px and no better,
 /// however many they are. Views from a straight way without turns hardly tell where the camera sits: directions above
-/// largest_sigma_deg, largest_sigma_m are left as they were, and said. Throws
-/// UnsupportedError where fewer than 100 points are seen by enough images, or no direction is told; errors of
-/// colorize(). Deterministic for any number of threads. Thread-safe.
+/// largest_sigma_deg, largest_sigma_m are left as they were, and said. Memory: of each kept image six bytes a
+/// pixel. Throws UnsupportedError where fewer than 100 points are seen by enough images, or no direction is told; what
+/// colorize() throws. The same for any number of threads. Thread-safe.
 RefinedExtrinsic refine_extrinsic(const PointCloud& map, const PosedImages& images, const ColorizeOptions& options = {},
                                   const RefineOptions& refine = {});
 
