@@ -1,5 +1,5 @@
 # What is installed, in two parts: `programs`, and `development` for find_package(cmap), with the modules that this build
-# has: cmap::core, geometry, io, spatial, metrics, align, peers, eval, report and board, and, where Ceres was found, graph, lio and recon.
+# has: cmap::core, geometry, io, spatial, metrics, align, peers, eval, report and board, and, where Ceres was found, graph, lio, colorize and recon.
 # The libraries are static.
 include(CMakePackageConfigHelpers)
 

@@ -2,14 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <limits>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
 
 #include "cmap/colorize/colorize.hpp"
 #include "cmap/colorize/colorize_report.hpp"
+#include "cmap/colorize/refine_extrinsic.hpp"
 #include "cmap/colorize/scan_map.hpp"
 #include "cmap/core/execution.hpp"
 #include "cmap/core/progress.hpp"
@@ -59,7 +59,6 @@ struct Arguments {
   bool leave_out_unseen = false, refine = false, print_options = false;
   cmap::CommonArguments common;
 
-  std::vector<std::string> inputs() const { return {capture, map, trajectory, extrinsic}; }
   std::vector<std::string> outputs() const { return {output, json, refined}; }
 };
 
@@ -86,6 +85,10 @@ void add_options(cmap::CommandLine& line, Arguments& a) {
       .values(3, 3);
   line.add("--time-offset", a.time_offset_s, "S", "added to the images' times, beside the capture's own [0]")
       .between(-1e6, 1e6);
+  line.add_flag("--refine-extrinsic", a.refine,
+                "check of the calibration: the change for which the images agree best; it is told, never applied");
+  line.add("--extrinsic-output", a.refined, "FILE", "the matrix T_lidar_camera that --refine-extrinsic finds, to write")
+      .not_empty();
   line.add("--set", a.settings, "NAME=VALUE", "one option by its name; may be repeated").one_at_a_time().not_empty();
   line.add_flag("--print-options", a.print_options, "all options as JSON, and nothing else");
   line.add("--json", a.json, "FILE", "everything about the result, to write").not_empty();
@@ -164,55 +167,106 @@ cmap::PointCloud map_to_write(const Arguments& a, const cmap::Colorization& resu
   return seen;
 }
 
+/// Results must not replace what is read: the capture's own files among them.
+void refuse_own_inputs(const Arguments& a) {
+  cmap::refuse_overwriting({a.map, a.trajectory, a.extrinsic}, a.outputs());
+  const std::filesystem::path capture = cmap::place_of_file(a.capture);
+  for (const std::string& output : a.outputs()) {
+    if (output.empty() || cmap::is_stream(output)) continue;
+    const std::filesystem::path within = cmap::place_of_file(output).lexically_relative(capture);
+    const std::string first = within.empty() ? ".." : within.begin()->string();
+    for (const char* name :
+         {"capture.json", "images.csv", "lidar.csv", "lio.tum", "imu.csv", "images", "lidar", "predictions", "truth"}) {
+      if (first != name) continue;
+      throw cmap::UsageError(fmt::format("{}: lies among the capture's own files; choose another place", output));
+    }
+  }
+}
+
 void check_arguments(const Arguments& a) {
-  if (a.capture.empty() || a.output.empty()) throw cmap::UsageError("CAPTURE and --output are required");
-  cmap::refuse_overwriting(a.inputs(), a.outputs());
+  if (a.capture.empty() || (a.output.empty() && !a.refine)) {
+    throw cmap::UsageError("CAPTURE and --output (or --refine-extrinsic) are required");
+  }
+  if (!a.refined.empty() && !a.refine) throw cmap::UsageError("--extrinsic-output needs --refine-extrinsic");
+  if (a.output.empty() && a.leave_out_unseen) throw cmap::UsageError("--leave-out-unseen needs --output");
+  refuse_own_inputs(a);
   cmap::check_extension(a.output, {".ply", ".PLY"}, "the colored map is written as PLY");
   for (const std::string& output : a.outputs()) cmap::require_writable(output);
+}
+
+cmap::Capture open(const Arguments& a) {
+  using cmap::Want;
+  const Want scans = a.map.empty() ? Want::kYes : Want::kNo;
+  return cmap::open_capture(a.capture, {.images = Want::kYes, .scans = scans, .imu = Want::kNo, .sessions = Want::kNo});
+}
+
+cmap::Trajectory poses_of(const Arguments& a, const cmap::Capture& capture, std::vector<cmap::Warning>& warnings) {
+  if (a.trajectory.empty()) return capture.lio;
+  cmap::TrajectoryFile file = cmap::read_trajectory(a.trajectory);
+  warnings.insert(warnings.end(), file.warnings.begin(), file.warnings.end());
+  if (!file.has_times) throw cmap::InputError(fmt::format("{}: poses without times", a.trajectory));
+  return std::move(file.poses);
+}
+
+struct Results {
+  cmap::ColorizeInput input;
+  std::optional<cmap::RefinedExtrinsic> refined;
+  std::optional<cmap::Colorization> colored;
+};
+
+nlohmann::ordered_json report_of(const Results& results, const cmap::ColorizeOptions& options,
+                                 const std::string& command) {
+  nlohmann::ordered_json report =
+      results.colored ? cmap::colorize_json(*results.colored, results.input, options, command)
+                      : nlohmann::ordered_json{{"schema", "cmap.colorize/1"}, {"run", {{"command", command}}}};
+  if (results.refined) report["refined_extrinsic"] = cmap::refined_json(*results.refined);
+  return report;
+}
+
+/// Prints and writes everything, or writes nothing.
+void deliver(const Arguments& a, const Results& results, const cmap::ColorizeOptions& options,
+             const std::vector<cmap::Warning>& warnings, const std::string& command) {
+  cmap::OutputFiles files;
+  files.add(a.output, [&](cmap::OutputFile& file) { cmap::write_ply(file, map_to_write(a, *results.colored)); });
+  files.add(a.json, [&](cmap::OutputFile& file) { file.write(report_of(results, options, command).dump(2) + "\n"); });
+  files.add(a.refined, [&](cmap::OutputFile& file) {
+    file.write(cmap::transform_text(results.refined->T_lidar_camera.matrix()));
+  });
+  if (!a.common.quiet && !cmap::any_to_standard_output(a.outputs())) {
+    std::string text = results.colored ? cmap::colorize_table(*results.colored, results.input) : "";
+    if (results.refined) text += cmap::refined_table(*results.refined);
+    cmap::print(text);
+  }
+  if (!a.common.quiet) cmap::print_warnings(warnings);
+  files.commit();
 }
 
 ExitCode run(const Arguments& a, const std::string& command) {
   cmap::ProgressBar bar(!a.common.quiet);
   const cmap::ExecutionScope scope(
       {.threads = a.common.threads, .progress = [&](std::string_view stage, double done) { bar.update(stage, done); }});
-  const cmap::ColorizeOptions options = options_of(a);
+  cmap::ColorizeOptions options = options_of(a);
   if (a.print_options) {
-    cmap::ColorizeOptions described = options;
-    cmap::print(cmap::options_json(cmap::fields_of(described)).dump(2) + "\n");
+    cmap::print(cmap::options_json(cmap::fields_of(options)).dump(2) + "\n");
     return ExitCode::kDone;
   }
   check_arguments(a);
-  using cmap::Want;
-  const cmap::Capture capture = cmap::open_capture(
-      a.capture,
-      {.images = Want::kYes, .scans = a.map.empty() ? Want::kYes : Want::kNo, .imu = Want::kNo, .sessions = Want::kNo});
+  const cmap::Capture capture = open(a);
   std::vector<cmap::Warning> warnings = capture.warnings;
-  cmap::Trajectory poses = capture.lio;
-  if (!a.trajectory.empty()) {
-    cmap::TrajectoryFile file = cmap::read_trajectory(a.trajectory);
-    warnings.insert(warnings.end(), file.warnings.begin(), file.warnings.end());
-    poses = std::move(file.poses);
-  }
+  const cmap::Trajectory poses = poses_of(a, capture, warnings);
   cmap::PosedCapture posed =
       cmap::posed_images(capture, poses, {.subset = subset_of(a), .time_offset_s = a.time_offset_s});
-  posed.images = with_files(std::move(posed.images), capture);
-  posed.images.T_lidar_camera = extrinsic_of(a, posed.images.T_lidar_camera, warnings);
-  cmap::ColorizeInput input;
-  input.n_chosen = posed.n_chosen;
-  input.n_without_pose = posed.n_without_pose;
-  input.T_lidar_camera = posed.images.T_lidar_camera;
-  const cmap::PointCloud map = map_of(a, capture, poses, input);
-  const cmap::Colorization result = cmap::colorize(map, posed.images, options);
-  cmap::OutputFiles files;
-  files.add(a.output, [&](cmap::OutputFile& file) { cmap::write_ply(file, map_to_write(a, result)); });
-  files.add(a.json, [&](cmap::OutputFile& file) {
-    file.write(cmap::colorize_json(result, input, options, command).dump(2) + "\n");
-  });
-  if (!a.common.quiet && !cmap::any_to_standard_output(a.outputs())) {
-    cmap::print(cmap::colorize_table(result, input));
-    cmap::print_warnings(warnings);
-  }
-  files.commit();
+  cmap::PosedImages images = with_files(std::move(posed.images), capture);
+  images.T_lidar_camera = extrinsic_of(a, images.T_lidar_camera, warnings);
+
+  Results results;
+  results.input.n_chosen = posed.n_chosen;
+  results.input.n_without_pose = posed.n_without_pose;
+  results.input.T_lidar_camera = images.T_lidar_camera;
+  const cmap::PointCloud map = map_of(a, capture, poses, results.input);
+  if (a.refine) results.refined = cmap::refine_extrinsic(map, images, options);
+  if (!a.output.empty()) results.colored = cmap::colorize(map, images, options);
+  deliver(a, results, options, warnings, command);
   return ExitCode::kDone;
 }
 

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "cmap/core/parallel.hpp"
 
@@ -11,7 +12,9 @@ namespace cmap {
 namespace {
 
 constexpr std::size_t kSplatChunk = 1024;
-constexpr float kEdgeOn = 0.02f;  ///< cosine below which a disc is a line
+constexpr float kEdgeOn = 0.02f;       ///< cosine below which a disc is a line
+constexpr float kNormalError = 0.05f;  ///< of a disc, rad
+constexpr float kFlattest = 0.017f;    ///< angle between ray and disc, rad
 
 /// The camera of an image of fewer, larger pixels.
 CameraModel reduced(CameraModel camera, int reduction) {
@@ -102,23 +105,35 @@ void DepthBuffer::fill(std::span<const ViewPoint> points) {
   });
 }
 
+/// How much nearer a surface must be to hide the point on its own ray.
+float DepthBuffer::tolerance_of(const ViewPoint& point, float cosine) const {
+  const auto least = static_cast<float>(options_.tolerance_m + options_.relative_tolerance * point.range_m);
+  if (point.normal.isZero()) return least;
+  const auto thickness = static_cast<float>(options_.thickness_m);
+  return std::max(least, std::min(static_cast<float>(options_.largest_tolerance_m), thickness / cosine));
+}
+
 bool DepthBuffer::hides(const ViewPoint& point) const {
   const Eigen::Vector2f center = buffer_pixel(point.pixel);
-  const float reach = static_cast<float>(options_.edge_px) / static_cast<float>(reduction_);
+  const auto on_buffer = [](float at, int size) { return std::clamp(static_cast<int>(std::lround(at)), 0, size - 1); };
+  const int own_x = on_buffer(center.x(), camera_.width), own_y = on_buffer(center.y(), camera_.height);
   const float cosine = std::abs(point.normal.dot(point.position)) / point.range_m;
-  const auto thickness = static_cast<float>(options_.thickness_m);
-  const float of_angle = std::min(static_cast<float>(options_.largest_tolerance_m), thickness / cosine);
-  const auto least = static_cast<float>(options_.tolerance_m + options_.relative_tolerance * point.range_m);
-  const float tolerance = point.normal.isZero() ? least : std::max(least, of_angle);
-  const int x0 = std::clamp(static_cast<int>(std::lround(center.x() - reach)), 0, camera_.width - 1);
-  const int x1 = std::clamp(static_cast<int>(std::lround(center.x() + reach)), 0, camera_.width - 1);
-  const int y0 = std::clamp(static_cast<int>(std::lround(center.y() - reach)), 0, camera_.height - 1);
-  const int y1 = std::clamp(static_cast<int>(std::lround(center.y() + reach)), 0, camera_.height - 1);
-  for (int y = y0; y <= y1; ++y) {
-    for (int x = x0; x <= x1; ++x) {
-      const float plane = range_of_plane(point, rays_[index(x, y)]);
-      const float own = std::isfinite(plane) ? std::clamp(plane, 0.7f * point.range_m, point.range_m) : point.range_m;
-      if (ranges_[index(x, y)] < own - tolerance) return true;
+  const float tolerance = tolerance_of(point, cosine);
+  const float plane = range_of_plane(point, rays_[index(own_x, own_y)]);
+  const float own = std::isfinite(plane) ? std::clamp(plane, 0.7f * point.range_m, point.range_m) : point.range_m;
+  if (ranges_[index(own_x, own_y)] < own - tolerance) return true;
+
+  // Around it the point's surface may come nearer, the more the flatter it is seen.
+  const float flat = point.normal.isZero() ? 0.5f * std::numbers::pi_v<float> : std::asin(std::min(1.0f, cosine));
+  const float slope = point.range_m / std::tan(std::max(flat - kNormalError, kFlattest));
+  const Eigen::Vector3f direction = point.position / point.range_m;
+  const float reach = static_cast<float>(options_.edge_px) / static_cast<float>(reduction_);
+  const int right = on_buffer(center.x() + reach, camera_.width),
+            bottom = on_buffer(center.y() + reach, camera_.height);
+  for (int y = on_buffer(center.y() - reach, camera_.height); y <= bottom; ++y) {
+    for (int x = on_buffer(center.x() - reach, camera_.width); x <= right; ++x) {
+      const float away = slope * (rays_[index(x, y)] - direction).norm();
+      if (ranges_[index(x, y)] < point.range_m - tolerance - away) return true;
     }
   }
   return false;

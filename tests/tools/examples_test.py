@@ -24,7 +24,8 @@ from ply import read_ply  # noqa: E402
 
 SOURCE = Path(os.environ["CMAP_SOURCE_DIR"]).resolve()
 TOWN = SOURCE / "data_samples/town"
-NAMES = ("cmap_eval", "cmap_align", "cmap_compare", "cmap_leaderboard", "cmap_render", "cmap_simulate", "cmap_recon", "cmap_convert")
+NAMES = ("cmap_eval", "cmap_align", "cmap_compare", "cmap_leaderboard", "cmap_render", "cmap_simulate", "cmap_recon", "cmap_lio",
+         "cmap_colorize", "cmap_convert")
 PROGRAMS = {name: Path(os.environ[name.upper()]).resolve() for name in NAMES if name.upper() in os.environ}
 # Seconds in place of minutes: a short street, few pixels.
 QUICK = ["route.length_m=24", "truth.map_points_per_m2=5", "camera.width_px=160", "camera.height_px=120",
@@ -215,6 +216,11 @@ CHECKS = {
         says("^3 scans, 3 images, 3 IMU samples, 0 poses\n"), makes("capture/capture.json", "capture/lidar/000002.pcd", "capture/imu.csv")],
     "cmap_convert drive.mcap -o part": [says("^2 scans")],
     "cmap_convert drive.mcap -o capture --config rig.json --topic": [makes("capture/images/000000.png")],
+    "cmap_colorize capture -o colored.ply": [holds("colored.ply"), says(r"seen +\d+ points", "gains", "inconsistency")],
+    "cmap_colorize capture -o even.ply": [holds("even.ply", "odd.ply"), says("CD ")],
+    "cmap_colorize capture -o truth.ply": [holds("truth.ply"), says("CD ")],
+    "cmap_colorize capture -o turned.ply": [holds("turned.ply")],
+    "cmap_colorize capture --refine-extrinsic": [transform("T_lidar_camera.txt", 10.0), says("not applied")],
     "cmap_compare a.json b.json c.json": [says(r"\*", r"\+", "best")],
     "cmap_compare a.json b.json --baseline": [says(r"Better \(\+\) or worse \(-\) than a", "95 % intervals", "accuracy")],
     "cmap_compare a.json b.json --names": [
@@ -412,6 +418,8 @@ class Examples(unittest.TestCase):
 
     def test_convert(self):
         self.check_all({"cmap_convert"})
+    def test_colorize(self):
+        self.check_all({"cmap_colorize"})
 
     def test_every_program_has_a_page(self):
         """It shows how to call the program."""

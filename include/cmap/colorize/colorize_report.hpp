@@ -5,6 +5,7 @@
 #include <string>
 
 #include "cmap/colorize/colorize.hpp"
+#include "cmap/colorize/refine_extrinsic.hpp"
 #include "cmap/colorize/scan_map.hpp"
 
 namespace cmap {
@@ -23,5 +24,9 @@ std::string colorize_table(const Colorization& result, const ColorizeInput& inpu
 /// Everything, each image too. Schema "cmap.colorize/1".
 nlohmann::ordered_json colorize_json(const Colorization& result, const ColorizeInput& input,
                                      const ColorizeOptions& options, const std::string& command);
+
+/// The change in degrees and centimeters, how sure it is, and what it improves; and that it was not applied.
+std::string refined_table(const RefinedExtrinsic& refined);
+nlohmann::ordered_json refined_json(const RefinedExtrinsic& refined);
 
 }  // namespace cmap

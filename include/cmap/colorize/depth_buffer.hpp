@@ -50,10 +50,12 @@ class DepthBuffer {
   /// In place of what was there.
   void fill(std::span<const ViewPoint> points);
 
-  /// Whether a surface lies nearer on the ray through the point, or within edge_px around it, by more than
+  /// Whether a surface lies nearer on the ray through the point by more than
   ///     max(tolerance_m + relative_tolerance range, min(thickness_m / |cos|, largest_tolerance_m))
-  /// with cos that of ray and normal. What is compared is the range of the point's own plane at that pixel, so that
-  /// ground does not hide itself. The point must be inside of the image. Thread-safe.
+  /// with cos that of ray and normal; the range of the point's own plane at the pixel is what that is nearer than, so
+  /// that ground does not hide itself. Or within edge_px around it, by what the point's own surface, seen at that
+  /// angle (3 degrees less, as normals are not exact), may come nearer more. The point must be inside of the image.
+  /// Thread-safe.
   bool hides(const ViewPoint& point) const;
 
   /// +inf where nothing is.
@@ -67,6 +69,7 @@ class DepthBuffer {
   }
   Eigen::Vector2f buffer_pixel(const Eigen::Vector2f& image_pixel) const;
   void draw(const ViewPoint& point);
+  float tolerance_of(const ViewPoint& point, float cosine) const;
   void lower(std::size_t pixel, float range_m);
 
   OcclusionOptions options_;

@@ -17,8 +17,8 @@ enum class ExposureModel {
 
 struct ExposureOptions {
   ExposureModel model = ExposureModel::kGain;
-  std::size_t most_points = 20'000;    ///< of those seen twice, spread over the map; more where images are many
-  std::size_t points_per_image = 200;  ///<
+  std::size_t most_points = 20'000;    ///< of the map, spread over it; more where images are many
+  std::size_t points_per_image = 200;  ///< at least, where there are so many
   double sigma_gain = 0.5;             ///< of the logarithm: how far gains are believed to lie from 1
   double least_sigma = 0.02;           ///< of the logarithm of an observation
   int darkest = 8, brightest = 247;    ///< levels outside have lost what they were

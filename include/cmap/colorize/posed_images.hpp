@@ -39,7 +39,7 @@ struct ImageSubset {
 };
 
 struct PosedImageOptions {
-  ImageSubset subset;
+  ImageSubset subset = {};
   double time_offset_s = 0.0;  ///< added to the images' times, beside the calibration's own
   double max_gap_s = 0.15;     ///< poses farther apart are not interpolated between
 };
