@@ -36,6 +36,8 @@ test::LoopDriveOptions long_drive(std::uint64_t seed) {
   test::LoopDriveOptions options;
   options.town.seed = options.seed = seed;
   options.town.blocks_x = options.town.blocks_y = 6;
+  options.heading_deg_per_m = 0.0025;  // with the scale, 0.3 to 0.5 % of the path
+  options.scale = 0.005;
   options.crossings = {{0, 0}, {4, 0}, {4, 1}, {0, 1}, {0, 2}, {4, 2}, {4, 3}, {0, 3},
                        {0, 4}, {4, 4}, {4, 2}, {0, 2}, {0, 1}, {4, 1}, {4, 0}, {0, 0}};
   return options;
