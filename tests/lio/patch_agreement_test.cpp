@@ -10,7 +10,8 @@
 namespace cmap {
 namespace {
 
-/// Ground of 40 m with or without houses of 6 m at random places on it, a point every 0.2 m, 1 cm of noise.
+/// Ground of 40 m, whole columns of the grid, with or without houses of 6 m at random places on it, a point every 0.2
+/// m, 1 cm of noise.
 PointCloud block(std::uint64_t seed, int n_houses) {
   PointCloud cloud;
   std::uint64_t n = 0;
@@ -19,8 +20,8 @@ PointCloud block(std::uint64_t seed, int n_houses) {
     cloud.positions.push_back(
         Eigen::Vector3d(x + 0.02 * random(), y + 0.02 * random(), z + 0.02 * random()).cast<float>());
   };
-  for (double x = -20.0; x < 20.0; x += 0.2) {
-    for (double y = -20.0; y < 20.0; y += 0.2) add(x, y, 0.0);
+  for (double x = -19.8; x < 19.9; x += 0.2) {
+    for (double y = -19.8; y < 19.9; y += 0.2) add(x, y, 0.0);
   }
   for (int house = 0; house < n_houses; ++house) {
     const double x = 30.0 * random(), y = 30.0 * random(), side = 5.0 + 4.0 * random();
@@ -72,7 +73,7 @@ TEST(PatchAgreement, OfAMapWithItselfIsWhole) {
   const PlaneGrid grid(block(1, 12), 1.0);
   const PatchAgreement same = agreement_of(grid, grid, Eigen::Isometry3d::Identity(), 0.2);
   EXPECT_EQ(same.share, 1.0);
-  EXPECT_EQ(same.score, 1.0);
+  EXPECT_NEAR(same.score, 1.0, 1e-9);
   EXPECT_EQ(same.rmse_m, 0.0);
   EXPECT_GT(same.places, 100.0);
 }
@@ -80,7 +81,8 @@ TEST(PatchAgreement, OfAMapWithItselfIsWhole) {
 TEST(PatchAgreement, OfOtherSamplesIsHighWhereverTheyLie) {
   const PointCloud cloud = block(2, 12);
   PointCloud even, odd;
-  for (std::size_t i = 0; i < cloud.size(); ++i) (i % 2 == 0 ? even : odd).positions.push_back(cloud.positions[i]);
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    (random_below(2, i, 99) == 0 ? even : odd).positions.push_back(cloud.positions[i]);
   const Eigen::Isometry3d T = moved_by({3.0, -7.0, 0.5}, {0.0, 0.0, 1.0});
   const PatchAgreement found =
       agreement_of(PlaneGrid(transformed(odd, T.inverse().matrix()), 1.0), PlaneGrid(even, 1.0), T, 0.2);
@@ -93,7 +95,7 @@ TEST(PatchAgreement, FallsWithTheErrorOfThePose) {
   double last = 1.01;
   for (const double off_m : {0.0, 0.15, 0.4, 1.0}) {
     const double score = agreement_of(grid, grid, moved_by({off_m, off_m, 0.0}), 0.2).score;
-    EXPECT_LT(score, last) << off_m;
+    EXPECT_LE(score, last) << off_m;
     last = score;
   }
   EXPECT_LT(last, 0.3);
