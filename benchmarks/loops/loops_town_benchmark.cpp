@@ -36,6 +36,8 @@ test::LoopDriveOptions long_drive(std::uint64_t seed) {
   test::LoopDriveOptions options;
   options.town.seed = options.seed = seed;
   options.town.blocks_x = options.town.blocks_y = 6;
+  options.heading_deg_per_m = 0.0025;  // with the scale, 0.3 to 0.5 % of the path
+  options.scale = 0.005;
   options.crossings = {{0, 0}, {4, 0}, {4, 1}, {0, 1}, {0, 2}, {4, 2}, {4, 3}, {0, 3},
                        {0, 4}, {4, 4}, {4, 2}, {0, 2}, {0, 1}, {4, 1}, {4, 0}, {0, 0}};
   return options;
@@ -69,9 +71,12 @@ struct Descriptors {
   explicit Descriptors(const Case& c) {
     for (auto* all : {&rings, &scan_rings}) all->resize(c.submaps.size());
     for (auto* all : {&contexts, &scan_contexts}) all->resize(c.submaps.size());
+    shifted.resize(c.submaps.size());
     parallel_chunks(c.submaps.size(), 1, [&](std::size_t i, std::size_t) {
       Submap scan = c.submaps[i];
-      describe(points_of(scan, c.drive.keyframes, c.options.voxel_m), c.options, rings[i], contexts[i]);
+      const PointCloud submap = points_of(scan, c.drive.keyframes, c.options.voxel_m);
+      describe(submap, c.options, rings[i], contexts[i]);
+      shifted[i] = sideways(submap);
       scan.first = scan.last = scan.center;
       describe(points_of(scan, c.drive.keyframes, c.options.voxel_m), c.options, scan_rings[i], scan_contexts[i]);
     });
@@ -82,8 +87,20 @@ struct Descriptors {
     ring = ring_descriptor(birds_eye(points, ground_m, options.reach_m));
     context = scan_context(points, ground_m);
   }
+  /// Contexts as if seen from other lanes, as Scan Context++ (Kim, Choi and Kim, T-RO 2022) makes up for its shifts.
+  static std::vector<ScanContext> sideways(PointCloud points) {
+    const double ground_m = ground_height_m(points);
+    std::vector<ScanContext> contexts;
+    for (Eigen::Vector3f& p : points.positions) p.y() -= 4.0F;
+    for (int lane = 0; lane < 5; ++lane) {
+      contexts.push_back(scan_context(points, ground_m));
+      for (Eigen::Vector3f& p : points.positions) p.y() += 2.0F;
+    }
+    return contexts;
+  }
   std::vector<RingDescriptor> rings, scan_rings;
   std::vector<ScanContext> contexts, scan_contexts;
+  std::vector<std::vector<ScanContext>> shifted;  ///< by 4 m to either side, in steps of 2
 };
 
 Json curve_json(const Curve& curve) {
@@ -106,10 +123,17 @@ Json descriptors_json(const Case& c, const std::filesystem::path& folder) {
   const auto contexts = [](const std::vector<ScanContext>& of) {
     return [&of](std::size_t from, std::size_t to) { return -best_turn(of[to], of[from]).distance; };
   };
+  const auto of_lanes = [&all](std::size_t from, std::size_t to) {
+    double best = -1.0;
+    for (const ScanContext& seen : all.shifted[from])
+      best = std::max(best, -best_turn(all.contexts[to], seen).distance);
+    return best;
+  };
   const std::vector<std::pair<std::string, std::function<double(std::size_t, std::size_t)>>> methods{
       {"ring_submaps", rings(all.rings)},
       {"ring_scans", rings(all.scan_rings)},
       {"scan_context_submaps", contexts(all.contexts)},
+      {"scan_context_submaps_lanes", of_lanes},
       {"scan_context_scans", contexts(all.scan_contexts)}};
   Json json;
   for (const auto& [name, score] : methods) {

@@ -4,7 +4,6 @@
 // repository: $CMAP_DATA_DIR, or ../shared/data beside it.
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <filesystem>

@@ -114,6 +114,9 @@ TEST(LoopGraph, HeadingIsFreeAndRollAndPitchAreKept) {
   };
   EXPECT_NEAR(cost_after({0.0, 0.0, 1.5}), 0.0, 1e-8);
   EXPECT_GT(cost_after({0.02, 0.0, 0.0}), 1000.0);
+  way.options.gravity_sigma_deg = 0.0;
+  graph = loop_graph(way.keyframes, none, way.options);
+  EXPECT_NEAR(cost_after({0.02, 0.0, 0.0}), 0.0, 1e-8);
 }
 
 TEST(LoopGraph, WithoutLoopsOdometryStays) {

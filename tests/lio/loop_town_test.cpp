@@ -102,8 +102,9 @@ TEST(LoopTown, WithoutADriftBoundNothingWrongIsAccepted) {
   options.drift_m = options.max_drift_m = 60.0;
   options.drift_deg = options.max_drift_deg = 180.0;
   options.rounds = 1;
+  options.submap_spacing_m = 15.0;
   const LoopClosure closure = close_loops(town.drive.keyframes, options);
-  EXPECT_GT(closure.n_loops, 8U);
+  EXPECT_GT(closure.n_loops, 2U);
   for (const LoopCandidate& c : closure.candidates) {
     if (!c.accepted) continue;
     const Eigen::Isometry3d off = town.motion(c.from, c.to).inverse() * c.T_from_to;

@@ -38,8 +38,9 @@ struct LoopOptions {
   // Pose graph. Standard deviations.
   double odometry_sigma_m_per_sqrt_m = 0.03;  ///< of odometry along a path, as a random walk
   double odometry_sigma_deg_per_sqrt_m = 0.03;
-  double gravity_sigma_deg = 0.3;  ///< of roll and pitch of every keyframe, which the odometry knows from gravity
-  double loop_sigma_m = 0.05;      ///< of a loop, at least
+  /// Of roll and pitch of every keyframe, which odometry knows from gravity; 0: it does not (without an IMU).
+  double gravity_sigma_deg = 0.3;
+  double loop_sigma_m = 0.05;  ///< of a loop, at least
   double loop_sigma_deg = 0.15;
   double cauchy_width = 1.0;      ///< of loops, in standard deviations
   double largest_residual = 5.0;  ///< a loop that the result contradicts by more standard deviations is dropped

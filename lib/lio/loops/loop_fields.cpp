@@ -26,7 +26,7 @@ OptionFields option_fields(LoopOptions& o) {
           field("rival_score_share", o.rival_score_share, kFraction),
           field("odometry_sigma_m_per_sqrt_m", o.odometry_sigma_m_per_sqrt_m, kPositive),
           field("odometry_sigma_deg_per_sqrt_m", o.odometry_sigma_deg_per_sqrt_m, kPositive),
-          field("gravity_sigma_deg", o.gravity_sigma_deg, kPositive),
+          field("gravity_sigma_deg", o.gravity_sigma_deg, kNotNegative),
           field("loop_sigma_m", o.loop_sigma_m, kPositive),
           field("loop_sigma_deg", o.loop_sigma_deg, kPositive),
           field("cauchy_width", o.cauchy_width, kPositive),

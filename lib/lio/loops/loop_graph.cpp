@@ -90,7 +90,7 @@ PoseGraph loop_graph(std::span<const Keyframe> keyframes, std::span<const LoopCa
   for (std::size_t i = 0; i < keyframes.size(); ++i) {
     graph.poses.push_back(keyframes[i].T_world_body);
     if (i > 0) graph.edges.push_back(odometry_edge(keyframes, i, options));
-    graph.priors.push_back(gravity_prior(keyframes[i], i, options));
+    if (options.gravity_sigma_deg > 0.0) graph.priors.push_back(gravity_prior(keyframes[i], i, options));
   }
   for (const LoopCandidate& candidate : candidates) {
     if (candidate.accepted) graph.edges.push_back(loop_edge(candidate, options));

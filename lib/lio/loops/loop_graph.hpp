@@ -9,8 +9,8 @@
 namespace cmap {
 
 /// The graph of all keyframes: odometry's motions between neighbors, whose variance grows with the path; roll and pitch
-/// of each, which gravity tells, heading and position left free; the accepted candidates as loops. The first keyframe
-/// stays.
+/// of each, where gravity tells them, heading and position left free; the accepted candidates as loops. The first
+/// keyframe stays.
 PoseGraph loop_graph(std::span<const Keyframe> keyframes, std::span<const LoopCandidate> candidates,
                      const LoopOptions& options);
 

@@ -1,5 +1,6 @@
 #include "loops/patch_agreement.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "cmap/align/icp.hpp"
 #include "cmap/core/error.hpp"
 #include "loops/drift_bound.hpp"
@@ -40,8 +42,8 @@ SubmapAlignment aligned_from(const SubmapSurface& from, const SubmapSurface& to,
   return result;
 }
 
-bool are_apart(const SubmapAlignment& a, const SubmapAlignment& b, const LoopOptions& options) {
-  return !difference(a.T_from_to, b.T_from_to).within({kDistinctVoxels * options.voxel_m, kDistinct_rad});
+bool are_apart(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, const LoopOptions& options) {
+  return !difference(a, b).within({kDistinctVoxels * options.voxel_m, kDistinct_rad});
 }
 
 void judge(SubmapAlignment& best, std::span<const SubmapAlignment> all, const LoopOptions& options) {
@@ -52,7 +54,7 @@ void judge(SubmapAlignment& best, std::span<const SubmapAlignment> all, const Lo
   judgment.reason = fmt::format("beyond chance {:.0f} % of the surface that both show agrees, in {:.0f} places",
                                 100.0 * agreement.score, agreement.places);
   for (const SubmapAlignment& other : all) {
-    const bool is_rival = other.is_aligned && are_apart(best, other, options) &&
+    const bool is_rival = other.is_aligned && are_apart(best.T_from_to, other.T_from_to, options) &&
                           other.agreement.score >= options.rival_score_share * agreement.score;
     if (is_rival) judgment.rivals.push_back({other.T_from_to.matrix(), other.agreement.score});
   }
@@ -78,7 +80,13 @@ SubmapSurface::SubmapSurface(PointCloud cloud, const LoopOptions& options)
 SubmapAlignment align_submaps(const SubmapSurface& from, const SubmapSurface& to,
                               std::span<const Eigen::Isometry3d> starts, const LoopOptions& options) {
   std::vector<SubmapAlignment> all;
-  for (const Eigen::Isometry3d& start : starts) all.push_back(aligned_from(from, to, start, options));
+  for (const Eigen::Isometry3d& start : starts) {
+    // It would end where another one did.
+    const bool is_known = std::any_of(all.begin(), all.end(), [&](const SubmapAlignment& a) {
+      return a.is_aligned && a.agreement.score >= options.least_score && !are_apart(a.T_from_to, start, options);
+    });
+    if (!is_known) all.push_back(aligned_from(from, to, start, options));
+  }
   std::size_t best = 0;
   for (std::size_t i = 1; i < all.size(); ++i) {
     if (all[i].is_aligned && (!all[best].is_aligned || all[i].agreement.score > all[best].agreement.score)) best = i;
