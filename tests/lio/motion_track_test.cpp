@@ -36,7 +36,8 @@ struct Predicted {
       states.push_back(state);
       poses.push_back({kBegin_s + kStep_s * i, state.position, state.rotation});
       if (i == kSteps) return;
-      state = propagated(state, {.duration_s = kStep_s, .rate_radps = {0.3, -0.5, 1.5}, .force_mps2 = {-3.0, 5.0, 9.0}});
+      state =
+          propagated(state, {.duration_s = kStep_s, .rate_radps = {0.3, -0.5, 1.5}, .force_mps2 = {-3.0, 5.0, 9.0}});
     }
   }
   MotionTrack track(std::optional<double> kept_s = std::nullopt) const { return {poses, states.back(), kept_s}; }
@@ -147,8 +148,7 @@ TEST(MotionTrack, PlaneJacobianIsTheDerivativeAtAnyTime) {
           plane_jacobian(R_end, normal, R_end.transpose() * (T * point - T.translation()), track.share_at(t));
       for (int axis = 0; axis < 6; ++axis) {
         const StateVector d = 1e-6 * StateVector::Unit(axis);
-        const double numeric =
-            (residual(moved(track.predicted(), d)) - residual(moved(track.predicted(), -d))) / 2e-6;
+        const double numeric = (residual(moved(track.predicted(), d)) - residual(moved(track.predicted(), -d))) / 2e-6;
         // Rounding of some 20 m by a step of 1e-6.
         EXPECT_NEAR(found[axis], numeric, 1e-7) << t << ", " << axis << (kept_s ? ", kept" : "");
       }

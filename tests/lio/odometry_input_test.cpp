@@ -198,8 +198,8 @@ TEST(OdometryInput, OneWallLeavesDirectionsOpenAndSaysSo) {
     ASSERT_EQ(scan.open_turns_imu.size(), 1U) << i;
     for (const Vector3d& shift : scan.open_shifts_world) EXPECT_LT(std::abs(shift.y()), 0.05) << i;
   }
-  const Vector3d error = result.scans.back().T_world_imu.translation() -
-                         drive.truth(result.scans.back().time_s).translation();
+  const Vector3d error =
+      result.scans.back().T_world_imu.translation() - drive.truth(result.scans.back().time_s).translation();
   EXPECT_LT(std::abs(error.y()), 0.02) << "held by the wall";
   // The IMU alone: its accelerometer is off by 0.02 m/s^2 an axis, of which the tilt at the start takes most; 4 s.
   EXPECT_LT(error.norm(), 0.5);

@@ -40,8 +40,9 @@ void expect_found(const Found& found, double position_m, double velocity_mps) {
   EXPECT_TRUE(found.start.in_motion);
   EXPECT_LT((found.start.state.velocity - found.truth.velocity_mps).norm(), velocity_mps);
   EXPECT_LT((found.start.state.position - found.truth.T_world_body.translation()).norm(), position_m);
-  EXPECT_LT(rotation_angle_rad(found.truth.T_world_body.linear().transpose() *
-                               found.start.state.rotation.toRotationMatrix()), 0.2 * M_PI / 180.0);
+  EXPECT_LT(
+      rotation_angle_rad(found.truth.T_world_body.linear().transpose() * found.start.state.rotation.toRotationMatrix()),
+      0.2 * M_PI / 180.0);
 }
 
 // Two scans register to 1 or 2 cm: 0.2 m/s of what happens in a tenth of a second.

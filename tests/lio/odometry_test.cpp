@@ -67,7 +67,8 @@ TEST(Odometry, FollowsAWalkWithoutAnImu) {
 
 TEST(Odometry, GoesOnFromMotion) {
   // The first scan is of the second 8, in full walk.
-  const Drive drive = test::drive_through(test::furnished_room(), test::walk_path(1.5, 20.0), test::small_spinning(), 8.0);
+  const Drive drive =
+      test::drive_through(test::furnished_room(), test::walk_path(1.5, 20.0), test::small_spinning(), 8.0);
   for (const bool with_imu : {true, false}) {
     const Result result = test::run(drive, with_imu ? OdometryOptions{} : without_imu());
     EXPECT_TRUE(result.summary.started_in_motion) << with_imu;
@@ -174,8 +175,9 @@ TEST(Odometry, TakesTimesBeforeTheStamp) {
   const Result result = test::run(drive, {}, walk().truth(0.0));
   ASSERT_EQ(result.scans.size(), walk_with_imu().scans.size());
   // Times are floats: 4e-9 s.
-  EXPECT_LT((result.scans.back().T_world_imu.translation() -
-             walk_with_imu().scans.back().T_world_imu.translation()).norm(), 0.01);
+  EXPECT_LT(
+      (result.scans.back().T_world_imu.translation() - walk_with_imu().scans.back().T_world_imu.translation()).norm(),
+      0.01);
 }
 
 TEST(Odometry, RefusesOptionsThatMeanNothing) {

@@ -87,8 +87,9 @@ StateMatrix numeric_jacobian(const NavState& state, const MotionInput& input) {
   StateMatrix F;
   for (int i = 0; i < part::kAll; ++i) {
     const StateVector d = step * StateVector::Unit(i);
-    F.col(i) = (difference(propagated(moved(state, d), input), base) -
-                difference(propagated(moved(state, -d), input), base)) / (2.0 * step);
+    F.col(i) =
+        (difference(propagated(moved(state, d), input), base) - difference(propagated(moved(state, -d), input), base)) /
+        (2.0 * step);
   }
   return F;
 }
@@ -158,8 +159,8 @@ struct Runs {
 
   Runs() {
     StateVector deviations;
-    deviations << Vector3d::Constant(0.01), Vector3d::Constant(0.1), Vector3d::Constant(0.2),
-        Vector3d::Constant(0.02), Vector3d::Constant(0.1), Vector3d::Constant(0.05);
+    deviations << Vector3d::Constant(0.01), Vector3d::Constant(0.1), Vector3d::Constant(0.2), Vector3d::Constant(0.02),
+        Vector3d::Constant(0.1), Vector3d::Constant(0.05);
     P0 = deviations.array().square().matrix().asDiagonal();
   }
   StateMatrix predicted() const {

@@ -31,8 +31,10 @@ OdometryOptions within(double min_m, double max_m) {
 }
 
 TEST(ScanPoints, AreThoseWithinRange) {
-  const auto found = scan_points(scan_of({{0.5F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}, {0.0F, -3.0F, 4.0F},
-                                          {0.0F, 10.0F, 0.0F}, {0.0F, 0.0F, 10.5F}}, {}), within(1.0, 10.0));
+  const auto found = scan_points(
+      scan_of({{0.5F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}, {0.0F, -3.0F, 4.0F}, {0.0F, 10.0F, 0.0F}, {0.0F, 0.0F, 10.5F}},
+              {}),
+      within(1.0, 10.0));
   ASSERT_EQ(found.positions.size(), 3U);
   EXPECT_EQ(found.positions[0], Vector3f(1.0F, 0.0F, 0.0F)) << "the bounds are within";
   EXPECT_EQ(found.positions[1], Vector3f(0.0F, -3.0F, 4.0F));
@@ -63,8 +65,8 @@ TEST(ScanPoints, WithEqualTimesAreOfThatInstant) {
 }
 
 TEST(ScanPoints, PointsThatAreNoneGiveNothingButTheirTimes) {
-  const auto found = scan_points(scan_of({{kNan, 0, 0}, {2, 0, 0}, {0, kInfinity, 0}, {3, kNan, 0}},
-                                         {0.0F, 0.03125F, 0.0625F, 0.125F}), {});
+  const auto found = scan_points(
+      scan_of({{kNan, 0, 0}, {2, 0, 0}, {0, kInfinity, 0}, {3, kNan, 0}}, {0.0F, 0.03125F, 0.0625F, 0.125F}), {});
   ASSERT_EQ(found.positions.size(), 1U);
   EXPECT_EQ(found.begin_s, 100.0) << "so that begin and end do not wander with what returned";
   EXPECT_EQ(found.end_s, 100.125);
@@ -87,8 +89,9 @@ TEST(ScanPoints, AllWithinTheBlindRangeAreNone) {
 }
 
 TEST(Thinned, KeepsTheFirstOfEachVoxel) {
-  const std::vector<Vector3f> points{{0.1F, 0.1F, 0.1F}, {0.9F, 0.9F, 0.9F}, {1.0F, 0.1F, 0.1F}, {-0.1F, 0.1F, 0.1F},
-                                     {0.1F, -1.0F, 0.1F}, {0.1F, -0.001F, 0.1F}, {-0.9F, 0.2F, 0.2F}};
+  const std::vector<Vector3f> points{{0.1F, 0.1F, 0.1F},  {0.9F, 0.9F, 0.9F},  {1.0F, 0.1F, 0.1F},
+                                     {-0.1F, 0.1F, 0.1F}, {0.1F, -1.0F, 0.1F}, {0.1F, -0.001F, 0.1F},
+                                     {-0.9F, 0.2F, 0.2F}};
   EXPECT_THAT(thinned(points, 1.0, 100), ElementsAre(0U, 2U, 3U, 4U)) << "cells begin at whole multiples, below 0 too";
 }
 
