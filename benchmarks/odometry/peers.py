@@ -36,21 +36,23 @@ class KissIcp:
 
 
 class RkoLio:
-    """The base is the IMU. A scan goes in after the IMU's samples up to its end."""
+    """The base is the IMU. A scan goes in after the IMU's samples before its end."""
 
     def __init__(self, scans):
         from rko_lio.config import LIOConfig
         from rko_lio.lio import LIO
 
         self.odometry = LIO(LIOConfig())
-        self.T_imu_lidar = scans.T_imu_lidar
+        # It ends the process at a rotation that is orthogonal to 3e-9 only, as KITTI's is.
+        self.T_imu_lidar = scans.T_imu_lidar.copy()
+        self.T_imu_lidar[:3, :3] = Rotation.from_matrix(scans.T_imu_lidar[:3, :3]).as_matrix()
         self.imu = np.loadtxt(scans.capture / "imu.csv", delimiter=",", skiprows=1)
         self.next = 0
 
     def register(self, points, times):
         nanoseconds = np.round(times * 1e9).astype(np.int64)
         begin = time.process_time()
-        while self.next < len(self.imu) and self.imu[self.next, 0] <= times.max() + 0.02:
+        while self.next < len(self.imu) and self.imu[self.next, 0] < times.max():
             row = self.imu[self.next]
             self.odometry.add_imu_measurement(row[4:7], row[1:4], int(round(row[0] * 1e9)), np.eye(4))
             self.next += 1
