@@ -91,8 +91,8 @@ def main(program, data, output):
         ranges = np.linalg.norm(positions, axis=1)
         kept = positions[(ranges >= 1.0) & (ranges <= 100.0)]
         change = np.linalg.norm(straight - kept, axis=1).max() if len(straight) == len(kept) else float("nan")
-        print(f"{i:4}  {times.max() - times.min():10.4f}  {np.linalg.norm(poses.positions[i] - poses.positions[0]):7.4f}  "
-              f"{np.linalg.norm(stated[i] - stated[0]):20.4f}  {len(positions):6}  {change:.4f}")
+        moved, stated_moved = (np.linalg.norm(p[i] - p[0]) for p in (poses.positions, stated))
+        print(f"{i:4}  {np.ptp(times):10.4f}  {moved:7.4f}  {stated_moved:20.4f}  {len(positions):6}  {change:.4f}")
 
 
 if __name__ == "__main__":

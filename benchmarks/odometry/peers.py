@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Runs a peer on a capture: peers.py NAME CAPTURE TUM, in the environment that make_environment.sh makes.
 
-NAME is kiss-icp, kiss-icp-raw (without deskewing), or rko-lio. Writes world_T_imu at scan ends, and prints a JSON object
-with the CPU milliseconds a scan (median, all threads)."""
+NAME is kiss-icp, kiss-icp-raw (without deskewing), or rko-lio. Writes world_T_imu at scan ends, and prints a JSON
+object with the CPU milliseconds a scan (median, all threads)."""
 
 import json
 import sys

@@ -47,15 +47,16 @@ def measured(capture, output, health):
 
 
 def row(sensor, way, seed, with_imu, m):
-    return (f"| {sensor} | {way} | {seed} | {'yes' if with_imu else 'no'} | {m['length_m']:.0f} | {m['end_percent']:.3f} | "
-            f"{m['relative_percent']:.3f} | {m['attitude_deg']:.2f} | {m['end_deg']:.2f} | {m['deskew_median_cm']:.2f} | "
-            f"{m['deskew_p95_cm']:.2f} | {m['cpu_ms']:.1f} |")
+    cells = [sensor, way, str(seed), "yes" if with_imu else "no", f"{m['length_m']:.0f}"]
+    cells += [f"{m[name]:.3f}" for name in ("end_percent", "relative_percent")]
+    cells += [f"{m[name]:.2f}" for name in ("attitude_deg", "end_deg", "deskew_median_cm", "deskew_p95_cm")]
+    return "| " + " | ".join([*cells, f"{m['cpu_ms']:.1f}"]) + " |"
 
 
 def arguments():
     parser = argparse.ArgumentParser(description="Makes captures with cmap_simulate, runs cmap_lio, compares.")
     parser.add_argument("--programs", type=Path, required=True, help="folder of cmap_simulate and cmap_lio")
-    parser.add_argument("--captures", type=Path, required=True, help="folder for captures, made where they are not there")
+    parser.add_argument("--captures", type=Path, required=True, help="folder for captures, made if need be")
     parser.add_argument("--output", type=Path, required=True, help="folder for trajectories and results.json")
     parser.add_argument("--sensors", nargs="+", default=list(SENSORS), choices=list(SENSORS))
     parser.add_argument("--ways", nargs="+", default=list(WAYS), choices=list(WAYS))
