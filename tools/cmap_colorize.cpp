@@ -26,6 +26,7 @@
 #include "command_line.hpp"
 #include "files.hpp"
 #include "program.hpp"
+#include "recording_input.hpp"
 
 namespace {
 
@@ -64,7 +65,7 @@ struct Arguments {
 
 void add_options(cmap::CommandLine& line, Arguments& a) {
   constexpr double kLeast = 1e-6, kMost = 1e6;
-  line.add("CAPTURE", a.capture, "DIR", "folder of a capture").not_empty();
+  line.add("CAPTURE", a.capture, "PATH", "folder of a capture, or a recording").not_empty();
   line.add("-o,--output", a.output, "FILE.ply", "colored map to write").not_empty();
   line.add("--map", a.map, "FILE", "map to color, in the world of the poses [the scans along the poses]").not_empty();
   line.add("--trajectory", a.trajectory, "FILE", "poses world_T_imu [the capture's lio.tum]").not_empty();
@@ -92,6 +93,7 @@ void add_options(cmap::CommandLine& line, Arguments& a) {
   line.add("--set", a.settings, "NAME=VALUE", "one option by its name; may be repeated").one_at_a_time().not_empty();
   line.add_flag("--print-options", a.print_options, "all options as JSON, and nothing else");
   line.add("--json", a.json, "FILE", "everything about the result, to write").not_empty();
+  cmap::add_recording_options(line, a.recording);
   cmap::add_common_options(line, a.common, "no table, no warnings and no progress");
 }
 
@@ -194,10 +196,10 @@ void check_arguments(const Arguments& a) {
   for (const std::string& output : a.outputs()) cmap::require_writable(output);
 }
 
-cmap::Capture open(const Arguments& a) {
+cmap::Capture open(const Arguments& a, const std::string& folder) {
   using cmap::Want;
   const Want scans = a.map.empty() ? Want::kYes : Want::kNo;
-  return cmap::open_capture(a.capture, {.images = Want::kYes, .scans = scans, .imu = Want::kNo, .sessions = Want::kNo});
+  return cmap::open_capture(folder, {.images = Want::kYes, .scans = scans, .imu = Want::kIfUsable, .sessions = Want::kNo});
 }
 
 cmap::Trajectory poses_of(const Arguments& a, const cmap::Capture& capture, std::vector<cmap::Warning>& warnings) {
@@ -251,7 +253,7 @@ ExitCode run(const Arguments& a, const std::string& command) {
     return ExitCode::kDone;
   }
   check_arguments(a);
-  const cmap::Capture capture = open(a);
+  const cmap::Capture capture = open(a, cmap::capture_of(a.capture, a.recording, {}));
   std::vector<cmap::Warning> warnings = capture.warnings;
   const cmap::Trajectory poses = poses_of(a, capture, warnings);
   cmap::PosedCapture posed =

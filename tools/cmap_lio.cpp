@@ -162,8 +162,7 @@ void deliver(const Arguments& a, const cmap::LidarMapping& mapping, const cmap::
   files.add(folder / "map.pcd", [&](cmap::OutputFile& file) { cmap::write_pcd(file, mapping.map); });
   files.add(folder / "health.json", json(cmap::health_json(mapping, options)));
   if (mapping.loops) {
-    const cmap::LoopOptions loops = options.loops ? *options.loops : cmap::loop_options_for(mapping.keyframes);
-    files.add(folder / "loops.json", json(cmap::loops_json(*mapping.loops, mapping.keyframes, loops)));
+    files.add(folder / "loops.json", json(cmap::loops_json(*mapping.loops, mapping.keyframes, mapping.loop_options)));
   }
   files.add(a.figure, [&](cmap::OutputFile& file) { write_figure(mapping, a.figure, file); });
   if (!a.common.quiet) cmap::print(cmap::mapping_table(mapping));

@@ -21,6 +21,7 @@
 #include "command_line.hpp"
 #include "files.hpp"
 #include "program.hpp"
+#include "recording_input.hpp"
 
 namespace {
 
@@ -53,6 +54,7 @@ struct Arguments {
   cmap::Stage stop_after = cmap::Stage::kFusion;
   std::optional<int> only_session;
   bool check = false, resume = false, session_maps = false, print_options = false;
+  cmap::RecordingArguments recording;
   cmap::CommonArguments common;
 };
 
@@ -68,7 +70,7 @@ cmap::EnumNames<cmap::Stage> named_stages() {
 
 void add_options(cmap::CommandLine& line, Arguments& a) {
   const cmap::EnumNames<cmap::SessionRegistrationMethod>& methods = cmap::registration_method_names();
-  line.add("CAPTURE", a.capture, "DIR", "folder of a capture");
+  line.add("CAPTURE", a.capture, "PATH", "folder of a capture, or a recording");
   line.add("-o,--output", a.output, "DIR", "folder for the results; made if need be").not_empty();
   line.add_flag("--check", a.check, "list all that is missing or odd in CAPTURE at once; writes nothing");
   line.add("--evaluate", a.reference, "REF", "reference map: also evaluation.json and evaluation.png").not_empty();
@@ -86,6 +88,7 @@ void add_options(cmap::CommandLine& line, Arguments& a) {
   line.add("--only-session", a.only_session, "K", "reconstruct this session alone").between(0, 1'000'000);
   line.add_flag("--resume", a.resume, "go on from the stages that an earlier run of the same inputs left in DIR");
   line.add_flag("--session-maps", a.session_maps, "also each session's own map, DIR/sessions/NAME.ply");
+  cmap::add_recording_options(line, a.recording);
   cmap::add_common_options(line, a.common, "no table and no progress");
 }
 
@@ -261,7 +264,8 @@ ExitCode run(const Arguments& a, const std::string& command) {
   cmap::ProgressBar progress(!a.common.quiet);
   const auto tell = [&](std::string_view stage, double done) { progress.update(stage, done); };
   const cmap::ReconstructionInput input =
-      cmap::open_reconstruction_input(a.capture, options, a.stop_after, {.progress = tell});
+      cmap::open_reconstruction_input(cmap::capture_of(a.capture, a.recording, {.progress = tell}), options,
+                                      a.stop_after, {.progress = tell});
   const cmap::Capture& capture = input.capture;
   const cmap::FolderLock lock = make_output_folders(a, capture);
   cmap::OutputFiles files;

@@ -122,7 +122,8 @@ void check_inputs(const Capture& capture, const ReconstructionOptions& options, 
 std::string_view stage_name(Stage stage) { return kStageNames.at(static_cast<std::size_t>(stage)); }
 
 CaptureParts parts_needed(const ReconstructionOptions& options, Stage last) {
-  CaptureParts parts{.images = Want::kNo, .scans = Want::kYes, .imu = Want::kNo};
+  // The IMU is read, if it can be, for what gravity says of the poses.
+  CaptureParts parts{.images = Want::kNo, .scans = Want::kYes, .imu = Want::kIfUsable};
   if (options.registration.method == SessionRegistrationMethod::kPrefusion) parts.scans = Want::kIfUsable;
   if (last < Stage::kRegistration) parts.scans = Want::kNo;
   return parts;

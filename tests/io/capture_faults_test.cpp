@@ -65,7 +65,7 @@ TEST(CaptureFaults, EveryFaultIsListed) {
   json.replace(json.find("[0,-1,0,0.5]"), 12, "[0,1,0,0.5]");
   text.files["images.csv"] = "timestamp_s,file\n1,images/a.jpg\n1,images/b.jpg\n3,images/c.jpg\nx,images/a.jpg\n";
   text.files["lidar.csv"] = "time,file\n";
-  text.files["imu.csv"] += "1,0,0,0,0,0,1\n";
+  text.files["imu.csv"] += "x,0,0,0,0,0,1\n";
   text.files["lio.tum"] = "moon\n";
   text.files["predictions/a.npz"] = text.files["predictions/b.npz"] = text.files["predictions/frames.csv"] = "x";
   const TempFolder folder;
@@ -76,7 +76,7 @@ TEST(CaptureFaults, EveryFaultIsListed) {
                                    "capture.json: camera: fx is -25.5",  "capture.json: T_imu_lidar: no rotation",
                                    "images.csv: line 3: time 1 s",       "images.csv: line 4: ",
                                    "images.csv: line 5: timestamp_s",    "lidar.csv: line 1: the columns",
-                                   "imu.csv: line 4: time 1 s",          "lio.tum: ",
+                                   "imu.csv: line 4: timestamp_s",        "lio.tum: ",
                                    "predictions/frames.csv: of which"};
   ASSERT_EQ(faults.size(), std::size(kExpected)) << fmt::format("{}", fmt::join(faults, "\n"));
   for (std::size_t i = 0; i < faults.size(); ++i) EXPECT_THAT(faults[i], HasSubstr(kExpected[i]));

@@ -211,6 +211,10 @@ CHECKS = {
         makes("session/sessions.json"),
         lambda run: run.test.assertFalse((run.folder / "session/map.ply").exists()),
     ],
+    "cmap_lio capture -o lio": [makes("lio/trajectory.tum", "lio/map.pcd", "lio/health.json"), holds("lio.png")],
+    "cmap_lio capture -o lidar_only": [makes("lidar_only/trajectory.tum")],
+    "cmap_lio capture -o livox": [makes("livox/trajectory_imu.tum")],
+    "cmap_lio capture -o fine": [makes("fine/scans/000000.pcd")],
     "cmap_convert drive.mcap --topics": [says(r"(?m)^lidar +3  /points  sensor_msgs/PointCloud2 \(ros1\)$")],
     "cmap_convert drive.mcap -o capture --config rig.json": [
         says("^3 scans, 3 images, 3 IMU samples, 0 poses\n"), makes("capture/capture.json", "capture/lidar/000002.pcd", "capture/imu.csv")],

@@ -46,6 +46,7 @@ struct LidarMapping {
   std::vector<OdometryScan> scans;  ///< without points
   OdometrySummary summary;
   std::optional<LoopClosure> loops;  ///< none: not looked for
+  LoopOptions loop_options;          ///< with which they were
   PointCloud map;                    ///< keyframes at their poses after loop closure, thinned; no color
   std::vector<Warning> warnings;
   /// Why the messages ended early; everything else is what came before. Loops are not looked for then.
@@ -63,7 +64,7 @@ nlohmann::ordered_json health_json(const LidarMapping& mapping, const MappingOpt
 /// What people read: scans, path, start, matches, open directions, loops, speed.
 std::string mapping_table(const LidarMapping& mapping);
 
-/// Presets of sensors, configs/lio/*.json: "avia", "mid360", "ouster", "velodyne16", "velodyne32", "velodyne64".
+/// Presets of sensors, configs/lio/*.json: "aerial", "avia", "mid360", "ouster", "velodyne16", "velodyne32", "velodyne64".
 std::vector<std::string> odometry_preset_names();
 /// Throws UsageError for others, naming them.
 void apply_odometry_preset(OdometryOptions& options, const std::string& name);

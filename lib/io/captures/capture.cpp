@@ -6,6 +6,7 @@
 #include "captures/capture_json.hpp"
 #include "captures/capture_part.hpp"
 #include "captures/kitti_drive.hpp"
+#include "captures/quaternion_order.hpp"
 #include "captures/session_files.hpp"
 #include "cmap/io/file_place.hpp"
 #include "cmap/io/session_file.hpp"
@@ -140,7 +141,13 @@ Capture open_capture(const fs::path& folder, const CaptureParts& parts, const Fa
     capture.imu = read_imu(imu, description.acceleration_unit_mps2, calibration.imu_time_offset_s, found,
                            capture.warnings);
   });
-  if (is_there(lio)) faults.attempt([&] { capture.lio = read_lio(lio, capture.warnings); });
+  if (is_there(lio)) {
+    faults.attempt([&] {
+      capture.lio = read_lio(lio, capture.warnings);
+      const std::string fault = quaternion_order_fault(capture.lio, capture.imu);
+      if (!fault.empty()) throw InputError(fmt::format("{}: {}", lio.string(), fault));
+    });
+  }
   if (parts.sessions == Want::kNo) return capture;
   faults.attempt([&] { capture.sessions = find_sessions(predictions, capture.warnings); });
   faults.attempt([&] { require_own_frames(predictions, capture.sessions); });

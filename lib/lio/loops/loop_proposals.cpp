@@ -31,16 +31,25 @@ std::vector<std::size_t> best_apart(std::vector<Rated> rated, std::span<const Su
   return best;
 }
 
-/// For every submap, those before it that are no neighbors in time and that rate(from, to) gives a cost.
+/// Whether the way between them went elsewhere: along a straight street what lies ahead is seen long before, and is no
+/// loop, as the odometry has registered onto it all the way.
+bool is_detour(const Submap& from, const Submap& to, std::span<const Eigen::Isometry3d> poses) {
+  constexpr double kLeastDetour = 2.0;
+  const double distance_m = (poses[from.center].translation() - poses[to.center].translation()).norm();
+  return to.path_m - from.path_m >= kLeastDetour * distance_m;
+}
+
+/// For every submap, those before it that are no neighbors on the way and that rate(from, to) gives a cost.
 template <class Rate>
-std::vector<LoopProposal> proposals_by(std::span<const Submap> submaps, const LoopOptions& options, int most,
-                                       LoopSource source, Rate&& rate) {
+std::vector<LoopProposal> proposals_by(std::span<const Submap> submaps, std::span<const Eigen::Isometry3d> poses,
+                                       const LoopOptions& options, int most, LoopSource source, Rate&& rate) {
   std::vector<std::vector<std::size_t>> chosen(submaps.size());
   parallel_chunks(submaps.size(), 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t to = begin; to < end; ++to) {
       std::vector<Rated> rated;
       for (std::size_t from = 0; from < to; ++from) {
         if (submaps[to].path_m - submaps[from].path_m < options.min_path_m) break;
+        if (!is_detour(submaps[from], submaps[to], poses)) continue;
         const double cost = rate(from, to);
         if (std::isfinite(cost)) rated.push_back({from, cost});
       }
@@ -74,7 +83,7 @@ std::vector<LoopProposal> pose_proposals(std::span<const Submap> submaps, std::s
     return distance_m <= options.revisit_m + drift_m ? distance_m : kNo;
   };
   const LoopSource source = bounded ? LoopSource::kPose : LoopSource::kCorrected;
-  return proposals_by(submaps, options, options.pose_candidates, source, rate);
+  return proposals_by(submaps, poses, options, options.pose_candidates, source, rate);
 }
 
 std::vector<LoopProposal> descriptor_proposals(std::span<const Submap> submaps,
@@ -85,7 +94,7 @@ std::vector<LoopProposal> descriptor_proposals(std::span<const Submap> submaps,
     const double similarity = best_turn(descriptors[to], descriptors[from]).similarity;
     return similarity >= options.least_similarity ? -similarity : kNo;
   };
-  return proposals_by(submaps, options, options.descriptor_candidates, LoopSource::kDescriptor, rate);
+  return proposals_by(submaps, poses, options, options.descriptor_candidates, LoopSource::kDescriptor, rate);
 }
 
 std::vector<LoopProposal> without_repeats(std::vector<LoopProposal> proposals) {

@@ -88,8 +88,10 @@ std::vector<Eigen::Isometry3d> poses_of(const std::vector<Keyframe>& keyframes) 
 }
 
 void close(LidarMapping& mapping, const MappingOptions& options) {
-  const LoopOptions loops = options.loops ? *options.loops : loop_options_for(mapping.keyframes);
-  mapping.loops = close_loops(mapping.keyframes, loops);
+  mapping.loop_options = options.loops ? *options.loops : loop_options_for(mapping.keyframes);
+  // Without an IMU nothing says which way is down: odometry's roll and pitch are as good as its heading.
+  if (!options.loops && !options.odometry.use_imu) mapping.loop_options.gravity_sigma_deg = 0.0;
+  mapping.loops = close_loops(mapping.keyframes, mapping.loop_options);
   std::vector<double> times_s;
   for (const Keyframe& keyframe : mapping.keyframes) times_s.push_back(keyframe.time_s);
   const std::vector<Eigen::Isometry3d> before = poses_of(mapping.keyframes);
