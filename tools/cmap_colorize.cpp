@@ -58,6 +58,7 @@ struct Arguments {
   std::vector<double> turn_deg, shift_m;
   std::vector<std::string> settings;
   bool leave_out_unseen = false, refine = false, print_options = false;
+  cmap::RecordingArguments recording;
   cmap::CommonArguments common;
 
   std::vector<std::string> outputs() const { return {output, json, refined}; }

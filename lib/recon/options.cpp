@@ -97,6 +97,7 @@ OptionFields registration_fields(RegistrationOptions& registration) {
       field("lidar_voxel_m", registration.lidar.voxel_m, kPositive),
       field("lidar_min_range_m", registration.lidar.min_range_m, kNotNegative),
       field("lidar_margin_s", registration.lidar.margin_s, kNotNegative),
+      field("lidar_in_view", registration.lidar_in_view),
   };
 }
 

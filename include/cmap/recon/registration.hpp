@@ -38,6 +38,7 @@ struct RegistrationOptions {
   double min_overlap = 0.1;        ///< so does a smaller share of the session's points
   double match_gate = 3.0;         ///< of what is reported: overlap and RMSE
   LidarMapOptions lidar;
+  bool lidar_in_view = false;  ///< of the scans only what the session's cameras look at
   LinkOptions link;
 };
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "cmap/core/error.hpp"
+#include "registration/in_view.hpp"
 
 namespace cmap {
 namespace {
@@ -34,7 +35,8 @@ void register_one(const Capture& capture, const SessionPredictions& session, con
   // Finer than the registration thins: its voxels then hold means of several.
   const SessionCloud cloud = session_cloud(session, state.T_world_session, state.min_confidence, input.points,
                                            options.thinning * options.voxel_m);
-  const LidarMap lidar = lidar_around(capture, session, input, options, outcome);
+  LidarMap lidar = lidar_around(capture, session, input, options, outcome);
+  if (options.lidar_in_view) lidar.cloud = in_view(lidar.cloud, session, state.T_world_session);
   const SessionRegistration found =
       register_session(cloud, lidar.cloud, state.T_world_session, options, outcome.prefusion_rmse_m);
   outcome.scale_registration = found.scale_change;
