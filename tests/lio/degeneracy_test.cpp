@@ -11,6 +11,7 @@ namespace degeneracy_test {
 using Eigen::Vector3d;
 
 constexpr double kLeast = 10.0;
+constexpr double kTilt_rad = 0.009;  // half a degree
 
 /// Surfaces about a sensor at the origin, seen at random places, normals off by half a degree.
 class Surroundings {
@@ -19,13 +20,12 @@ class Surroundings {
   void add(const Vector3d& normal, double distance_m, int n) {
     const Vector3d u = normal.unitOrthogonal(), v = normal.cross(u);
     std::uniform_real_distribution<double> place(-20.0, 20.0);
-    std::normal_distribution<double> noise(0.0, 0.009);
+    std::normal_distribution<double> noise(0.0, kTilt_rad);
     for (int i = 0; i < n; ++i) {
       const Vector3d point = distance_m * normal + place(random_) * u + place(random_) * v;
       const Vector3d seen = (normal + noise(random_) * u + noise(random_) * v).normalized();
       const PoseVector jacobian = plane_jacobian(Eigen::Matrix3d::Identity(), seen, point, 1.0);
-      directions.normals.push_back(seen.cast<float>());
-      directions.turns.push_back(jacobian.head<3>().normalized().cast<float>());
+      directions.add(seen.cast<float>(), jacobian, static_cast<float>(kTilt_rad * kTilt_rad));
       system.add({0.01, 1e-3, jacobian}, 1.0);
     }
   }

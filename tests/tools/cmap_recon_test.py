@@ -225,7 +225,7 @@ class Recon(CaptureCase):
     # Inputs that are missing.
 
     def test_stages_without_inputs(self):
-        for missing, message in (("predictions", "predictions: no sessions"), ("lio.tum", "lio.tum: missing"),
+        for missing, message in (("predictions", "predictions: no sessions"),
                                  ("lidar.csv", "lidar.csv: no such file"), ("lidar/000030.pcd", "lidar.csv: line 32"),
                                  ("capture.json", "capture.json: no such file")):
             path, aside = self.capture / missing, self.folder / "aside"

@@ -49,13 +49,15 @@ void sort_samples(std::vector<ImuSample>& samples, const std::string& source, st
   const auto is_earlier = [](const ImuSample& a, const ImuSample& b) { return a.time_s < b.time_s; };
   const auto is_as_late = [](const ImuSample& a, const ImuSample& b) { return !(a.time_s < b.time_s); };
   if (std::ranges::adjacent_find(samples, is_as_late) == samples.end()) return;
-  const bool in_order = std::ranges::is_sorted(samples, is_earlier);
+  std::vector<std::string> done;
+  if (!std::ranges::is_sorted(samples, is_earlier)) done.push_back("rows were out of order and are sorted");
   std::ranges::stable_sort(samples, is_earlier);
   const std::size_t n = samples.size();
   samples.erase(std::ranges::unique(samples, is_as_late).begin(), samples.end());
-  warnings.push_back({"imu_times", fmt::format("{}: {}{} of {} rows repeat the time of another and are left out", source,
-                                               in_order ? "" : "rows were out of order and are sorted; ",
-                                               n - samples.size(), n)});
+  if (samples.size() < n) {
+    done.push_back(fmt::format("{} of {} rows repeat the time of another and are left out", n - samples.size(), n));
+  }
+  warnings.push_back({"imu_times", fmt::format("{}: {}", source, fmt::join(done, "; "))});
 }
 
 std::vector<ImuSample> read_imu(const fs::path& path, double unit_mps2, double offset_s, const Faults& faults,

@@ -19,8 +19,7 @@ std::optional<Plane> fit_plane(const PointSums& sums, const Eigen::Vector3d& ori
   const double across = std::sqrt(variances[0]);
   if (across > std::min(rule.most_thickness_m, rule.most_cell_share * cell_m)) return std::nullopt;
   if (across > rule.most_spread_share * std::sqrt(variances[1]) || variances[1] <= 0.0) return std::nullopt;
-  const double sq_noises = rule.least_spread_noises * rule.least_spread_noises;
-  if (variances[1] < sq_noises * sums.variance / sums.n) return std::nullopt;
+  if (variances[1] < rule.least_spread_m * rule.least_spread_m) return std::nullopt;
   // Of n points in a plane, n - 3 say how thick it is.
   const double thickness = variances[0] * sums.n / std::max(1.0, sums.n - 3.0);
   const double variance = std::max(sums.variance / sums.n, thickness);

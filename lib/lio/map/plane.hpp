@@ -49,9 +49,9 @@ struct PlaneRule {
   double most_thickness_m = 0.05;  ///< standard deviation across
   /// The points' spread across is at most this share of the cell, and of their spread along the shorter axis.
   double most_cell_share = 0.1, most_spread_share = 0.4;
-  /// The spread along the shorter axis is at least so many times the points' noise. One ring on the ground, seen again
-  /// and again, is a line as thick as its noise: a plane through the beam, not the ground.
-  double least_spread_noises = 3.0;
+  /// Least standard deviation along the shorter axis, above the noise of ranges: one ring on the ground, seen again and
+  /// again, is a line as thick as that, and its plane goes through the beam, not along the ground.
+  double least_spread_m = 0.06;
 };
 
 /// The plane of points about `origin` in a cell of that size; none where they are few or do not lie in one.

@@ -7,11 +7,17 @@
 
 namespace cmap {
 
-/// What the planes that a scan met say of where it is: their normals (world), and the axes that each resists a turn
-/// about (body at the end, unit).
+/// What the planes that a scan met say of where it is.
 struct PlaneDirections {
-  std::vector<Eigen::Vector3f> normals, turns;
-  std::vector<float> sq_tilts;  ///< variances of the normals' slopes, the larger of each
+  std::vector<Eigen::Vector3f> normals;  ///< world
+  std::vector<Eigen::Vector3f> turns;    ///< axes that each plane resists a turn about: body at the end, unit
+  std::vector<float> sq_tilts;           ///< variances of the normals' slopes, the larger of each
+
+  void add(const Eigen::Vector3f& normal, const PoseVector& jacobian, float sq_tilt) {
+    normals.push_back(normal);
+    turns.push_back(jacobian.head<3>().normalized().cast<float>());
+    sq_tilts.push_back(sq_tilt);
+  }
 };
 
 /// Directions that the surfaces leave open: along a corridor, over flat ground, one wall only.

@@ -1,6 +1,7 @@
 #include "odometry/imu_queue.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace cmap {
 namespace {
@@ -19,6 +20,7 @@ MotionInput guessed(double duration_s, const Eigen::Vector3d& rate) {
 }  // namespace
 
 bool ImuQueue::add(const ImuSample& sample) {
+  if (!std::isfinite(sample.time_s)) return false;
   if (!samples_.empty()) {
     if (!(sample.time_s > last_s())) return false;
     if (sample.time_s - last_s() > max_gap_s_) ++n_gaps_;

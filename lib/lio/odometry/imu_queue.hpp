@@ -13,7 +13,7 @@ class ImuQueue {
  public:
   explicit ImuQueue(double max_gap_s) : max_gap_s_(max_gap_s) {}
 
-  /// False where the sample is no later than the last.
+  /// False where the sample is no later than the last, or its time is no number.
   bool add(const ImuSample& sample);
   /// Forgets what only times before this one need.
   void forget_before(double time_s);

@@ -18,6 +18,8 @@ constexpr std::size_t kLeastMatches = 30;
 constexpr double kLeastShare = 0.15;
 /// So many scans without registration, one after the other, and the map begins anew.
 constexpr int kMostMissed = 10;
+/// Planes spread by at least so many times the noise of ranges.
+constexpr double kSpreadNoises = 3.0;
 /// Without an IMU, of what the prediction of a pose was off by, velocity and rate take this share: they follow within
 /// three scans, and an error early in a scan dies out (all of it would swing from scan to scan).
 constexpr double kRateGain = 0.7;
@@ -55,6 +57,7 @@ PlaneMapOptions map_options(const OdometryOptions& o) {
   PlaneMapOptions map{.voxel_m = o.voxel_m, .levels = o.levels, .most_points = o.cell_points,
                       .forget_after_m = o.forget_after_m, .plane = {}};
   map.plane.most_thickness_m = o.plane_thickness_m;
+  map.plane.least_spread_m = kSpreadNoises * o.range_noise_m;
   return map;
 }
 
@@ -114,7 +117,7 @@ struct Odometry::State {
   void deliver(const ScanPoints& scan, const MotionTrack& track, OdometryScan result, double cpu_begin_s);
   std::vector<MotionInput> inputs(double from_s, double to_s) const;
   bool covered(const ScanPoints& scan) const {
-    return !options.use_imu || (!imu.empty() && imu.last_s() >= scan.end_s);
+    return !options.use_imu || imu.last_s() >= scan.end_s;
   }
 };
 
@@ -160,8 +163,9 @@ void Odometry::State::add(ScanPoints scan) {
 }
 
 void Odometry::State::work(bool to_the_end) {
+  if (options.use_imu && imu.empty()) return;
   while (!waiting.empty()) {
-    if (options.use_imu && !started && !imu.empty() && waiting.front().begin_s < imu.first_s() - options.max_imu_gap_s) {
+    if (options.use_imu && !started && waiting.front().begin_s < imu.first_s() - options.max_imu_gap_s) {
       ++summary.n_before_imu;
       waiting.pop_front();
       continue;

@@ -28,9 +28,7 @@ class MatchingPass {
     const double sq_deviations = row.residual_m * row.residual_m / row.variance_m2;
     system.add(row, 1.0 / (1.0 + sq_deviations));
     sq_sum_m2 += row.residual_m * row.residual_m;
-    directions.normals.push_back(plane->normal);
-    directions.sq_tilts.push_back(std::max(plane->long_slope_variance, plane->short_slope_variance));
-    directions.turns.push_back(row.jacobian.head<3>().normalized().cast<float>());
+    directions.add(plane->normal, row.jacobian, std::max(plane->long_slope_variance, plane->short_slope_variance));
   }
 
   PlaneSystem system;
