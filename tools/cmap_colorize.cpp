@@ -200,7 +200,8 @@ void check_arguments(const Arguments& a) {
 cmap::Capture open(const Arguments& a, const std::string& folder) {
   using cmap::Want;
   const Want scans = a.map.empty() ? Want::kYes : Want::kNo;
-  return cmap::open_capture(folder, {.images = Want::kYes, .scans = scans, .imu = Want::kIfUsable, .sessions = Want::kNo});
+  return cmap::open_capture(folder,
+                            {.images = Want::kYes, .scans = scans, .imu = Want::kIfUsable, .sessions = Want::kNo});
 }
 
 cmap::Trajectory poses_of(const Arguments& a, const cmap::Capture& capture, std::vector<cmap::Warning>& warnings) {

@@ -26,7 +26,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kDescription =
     "LiDAR-inertial odometry with loop closure: where the sensor went, and the map that it saw. Writes to DIR\n"
-    "trajectory.tum (world_T_imu at the time of each scan's last point), trajectory_imu.tum (at the IMU's stamps too),\n"
+    "trajectory.tum (world_T_imu at the time of each scan's last point), trajectory_imu.tum (at the IMU's stamps "
+    "too),\n"
     "map.pcd, health.json (every scan's points, matches, open directions, time) and loops.json.";
 
 constexpr const char* kExample =
@@ -104,7 +105,8 @@ struct Source {
 void open_capture(const Arguments& a, Source& source) {
   if (!a.rig.empty()) throw cmap::UsageError("--rig: a capture has its calibration in capture.json");
   source.capture = cmap::open_capture(
-      a.input, {.images = cmap::Want::kNo, .imu = a.no_imu ? cmap::Want::kNo : cmap::Want::kYes, .sessions = cmap::Want::kNo});
+      a.input,
+      {.images = cmap::Want::kNo, .imu = a.no_imu ? cmap::Want::kNo : cmap::Want::kYes, .sessions = cmap::Want::kNo});
   source.calibration = source.capture->calibration;
   source.warnings = source.capture->warnings;
   source.next = cmap::capture_messages(*source.capture, source.warnings);

@@ -30,7 +30,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kDescription =
     "Reconstructs a metric colored map from a capture: VGGT predictions in sessions of unknown scale, LiDAR scans and\n"
-    "LiDAR-inertial poses (lio.tum; without one odometry runs first). Pre-fusion by poses, registration of each session onto the LiDAR (Sim(3) with an expected\n"
+    "LiDAR-inertial poses (lio.tum; without one odometry runs first). Pre-fusion by poses, registration of each "
+    "session onto the LiDAR (Sim(3) with an expected\n"
     "scale), pose graph, fusion. Writes map.ply, trajectory.tum (world_T_imu), sessions.json and report.json to DIR.\n"
     "A capture of your own: docs/FROM_YOUR_OWN_DATA.md.";
 
@@ -263,9 +264,8 @@ ExitCode run(const Arguments& a, const std::string& command) {
   if (!a.reference.empty()) reference = cmap::read_point_cloud(a.reference, {.sha256 = true});
   cmap::ProgressBar progress(!a.common.quiet);
   const auto tell = [&](std::string_view stage, double done) { progress.update(stage, done); };
-  const cmap::ReconstructionInput input =
-      cmap::open_reconstruction_input(cmap::capture_of(a.capture, a.recording, {.progress = tell}), options,
-                                      a.stop_after, {.progress = tell});
+  const cmap::ReconstructionInput input = cmap::open_reconstruction_input(
+      cmap::capture_of(a.capture, a.recording, {.progress = tell}), options, a.stop_after, {.progress = tell});
   const cmap::Capture& capture = input.capture;
   const cmap::FolderLock lock = make_output_folders(a, capture);
   cmap::OutputFiles files;

@@ -31,9 +31,10 @@ inline std::string capture_of(const std::string& input, const RecordingArguments
     return input;
   }
   if (a.rig.empty() || a.unpack.empty()) {
-    throw UsageError(fmt::format("{}: a recording: --rig FILE says how its sensors sit, --unpack DIR where it is unpacked "
-                                 "to",
-                                 input));
+    throw UsageError(
+        fmt::format("{}: a recording: --rig FILE says how its sensors sit, --unpack DIR where it is unpacked "
+                    "to",
+                    input));
   }
   const ExecutionScope scope(execution);
   const UnpackedRecording found = unpack_recording(input, read_recording_configuration(a.rig), a.unpack);

@@ -22,7 +22,8 @@ Json run_key(const Capture& capture, const ReconstructionOptions& options, std::
                                 entry.last_write_time().time_since_epoch().count()));
   };
   // Only what is read: the results may lie in the capture's folder, too.
-  for (const char* name : {"capture.json", "lidar.csv", "lio.tum", "imu.csv"}) add(fs::directory_entry(capture.folder / name));
+  for (const char* name : {"capture.json", "lidar.csv", "lio.tum", "imu.csv"})
+    add(fs::directory_entry(capture.folder / name));
   for (const StampedFile& scan : capture.scans) add(fs::directory_entry(scan.path));
   for (const auto& entry : fs::directory_iterator(capture.folder / "predictions")) add(entry);
   for (const fs::path& session : capture.sessions) {

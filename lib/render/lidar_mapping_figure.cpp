@@ -21,7 +21,8 @@ ColorScale height_scale(const PointCloud& map) {
   if (heights.empty()) return scale;
   std::ranges::sort(heights);
   const auto at = [&](double share) {
-    return map.origin.z() + static_cast<double>(heights[static_cast<std::size_t>(share * static_cast<double>(heights.size() - 1))]);
+    return map.origin.z() +
+           static_cast<double>(heights[static_cast<std::size_t>(share * static_cast<double>(heights.size() - 1))]);
   };
   scale.low = at(0.02);
   scale.high = std::max(at(0.98), scale.low + 0.1);

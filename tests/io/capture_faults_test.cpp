@@ -76,7 +76,7 @@ TEST(CaptureFaults, EveryFaultIsListed) {
                                    "capture.json: camera: fx is -25.5",  "capture.json: T_imu_lidar: no rotation",
                                    "images.csv: line 3: time 1 s",       "images.csv: line 4: ",
                                    "images.csv: line 5: timestamp_s",    "lidar.csv: line 1: the columns",
-                                   "imu.csv: line 4: timestamp_s",        "lio.tum: ",
+                                   "imu.csv: line 4: timestamp_s",       "lio.tum: ",
                                    "predictions/frames.csv: of which"};
   ASSERT_EQ(faults.size(), std::size(kExpected)) << fmt::format("{}", fmt::join(faults, "\n"));
   for (std::size_t i = 0; i < faults.size(); ++i) EXPECT_THAT(faults[i], HasSubstr(kExpected[i]));

@@ -40,8 +40,7 @@ TEST(Capture, OpensAHandMadeOne) {
 
 TEST(Capture, ImuRowsAreSortedAndOfOneTimeTheFirstCounts) {
   CaptureText text;
-  text.files["imu.csv"] =
-      "timestamp_s,gx,gy,gz,ax,ay,az\n3,0,0,0,0,0,3\n1,0,0,0,0,0,1\n2,0,0,0,0,0,2\n2,0,0,0,0,0,7\n";
+  text.files["imu.csv"] = "timestamp_s,gx,gy,gz,ax,ay,az\n3,0,0,0,0,0,3\n1,0,0,0,0,0,1\n2,0,0,0,0,0,2\n2,0,0,0,0,0,7\n";
   const Capture capture = text.open();
   std::vector<double> forces_g;
   for (const ImuSample& sample : capture.imu) forces_g.push_back(sample.specific_force_mps2.z() / 9.80665);

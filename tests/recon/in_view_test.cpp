@@ -5,8 +5,8 @@
 namespace cmap {
 namespace in_view_test {
 
-/// One camera of 20 x 10 pixels, focal length 10, at the session's origin; its farthest depth 5 units of 2 m: it sees 11 m
-/// far, to 12 pixels beside its center at (9.5, 4.5) on the longer axis.
+/// One camera of 20 x 10 pixels, focal length 10, at the session's origin; its farthest depth 5 units of 2 m: it sees
+/// 11 m far, to 12 pixels beside its center at (9.5, 4.5) on the longer axis.
 SessionPredictions session() {
   SessionPredictions s;
   s.width = 20;
@@ -27,7 +27,8 @@ TEST(InView, KeepsWhatTheCameraLooksAt) {
   cloud.origin = {100.0, 0.0, 0.0};
   cloud.positions = {{0, 0, 4}, {0, 0, -4}, {0, 0, 10.9f}, {0, 0, 11.1f}, {4.9f, 0, 4}, {5.1f, 0, 4}, {0, 2.5f, 4}};
   const PointCloud seen = in_view(cloud, session(), T_world_session);
-  // Right edge: u = 10 x / z + 9.5 below 22, so x below 5 at z = 4; lower edge: v = 10 y / z + 4.5 below 11, y below 2.6.
+  // Right edge: u = 10 x / z + 9.5 below 22, so x below 5 at z = 4; lower edge: v = 10 y / z + 4.5 below 11, y
+  // below 2.6.
   const std::vector<Eigen::Vector3f> expected{{0, 0, 4}, {0, 0, 10.9f}, {4.9f, 0, 4}, {0, 2.5f, 4}};
   ASSERT_EQ(seen.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(seen.positions[i], expected[i]);

@@ -62,11 +62,11 @@ struct CaptureParts {
 };
 
 /// Opens a capture, or a drive of KITTI's raw data as one (FORMATS, "KITTI drives"); one whose images and sessions are
-/// not wanted needs no camera. Rotations that deviate from one (largest entry of R^T R - I) are projected to SO(3), with
-/// a warning above 1e-3. Throws InputError naming file, place and reason: a file that is missing (images and scans of
-/// the tables too), an unknown or missing key, a matrix that is no rotation and translation (det R <= 0, or beyond 0.2),
-/// times that do not increase, one frames.csv beside several NPZ files. With a list of faults it goes on after each of
-/// these, with what could be read. Thread-safe.
+/// not wanted needs no camera. Rotations that deviate from one (largest entry of R^T R - I) are projected to SO(3),
+/// with a warning above 1e-3. Throws InputError naming file, place and reason: a file that is missing (images and scans
+/// of the tables too), an unknown or missing key, a matrix that is no rotation and translation (det R <= 0, or beyond
+/// 0.2), times that do not increase, one frames.csv beside several NPZ files. With a list of faults it goes on after
+/// each of these, with what could be read. Thread-safe.
 Capture open_capture(const std::filesystem::path& folder, const CaptureParts& parts = {}, const Faults& faults = {});
 
 /// The predictions of a session (read_session_predictions()), its frames' times in the clock of the LiDAR.

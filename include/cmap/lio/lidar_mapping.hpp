@@ -21,8 +21,8 @@ using LidarMessage = std::variant<LidarScan, ImuSample>;
 using LidarMessages = std::function<std::optional<LidarMessage>()>;
 
 /// Of a capture, which must outlive them: scans are read when their turn comes. Accelerations whose mean is near 1 are
-/// taken for g, with a warning. Throws InputError naming file and reason: no scan, a mean acceleration that is neither 1
-/// nor 9.8 (two or more units off), and, when a scan is read, what read_lidar_scan() throws.
+/// taken for g, with a warning. Throws InputError naming file and reason: no scan, a mean acceleration that is neither
+/// 1 nor 9.8 (two or more units off), and, when a scan is read, what read_lidar_scan() throws.
 LidarMessages capture_messages(const Capture& capture, std::vector<Warning>& warnings);
 
 struct MappingOptions {
@@ -40,8 +40,8 @@ struct MappingRun {
 
 /// Where the LiDAR went, and what it saw.
 struct LidarMapping {
-  Trajectory scan_ends;   ///< world_T_imu at the last point of every scan, after loop closure
-  Trajectory imu_stamps;  ///< and at the IMU's stamps
+  Trajectory scan_ends;             ///< world_T_imu at the last point of every scan, after loop closure
+  Trajectory imu_stamps;            ///< and at the IMU's stamps
   std::vector<Keyframe> keyframes;  ///< at their poses by odometry
   std::vector<OdometryScan> scans;  ///< without points
   OdometrySummary summary;
@@ -64,7 +64,8 @@ nlohmann::ordered_json health_json(const LidarMapping& mapping, const MappingOpt
 /// What people read: scans, path, start, matches, open directions, loops, speed.
 std::string mapping_table(const LidarMapping& mapping);
 
-/// Presets of sensors, configs/lio/*.json: "aerial", "avia", "mid360", "ouster", "velodyne16", "velodyne32", "velodyne64".
+/// Presets of sensors, configs/lio/*.json: "aerial", "avia", "mid360", "ouster", "velodyne16", "velodyne32",
+/// "velodyne64".
 std::vector<std::string> odometry_preset_names();
 /// Throws UsageError for others, naming them.
 void apply_odometry_preset(OdometryOptions& options, const std::string& name);

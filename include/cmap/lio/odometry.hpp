@@ -29,14 +29,14 @@ const EnumNames<ScanOutcome>& scan_outcome_names();
 
 /// One scan of the odometry.
 struct OdometryScan {
-  double time_s = 0.0;                 ///< of its last point: the instant of the pose
-  Eigen::Isometry3d T_world_imu;       ///< then
-  Array<Eigen::Vector3f> points;       ///< in range, as seen at that instant, in the IMU's axes: motion-compensated
-  Trajectory between;                  ///< world_T_imu at the IMU's stamps since the scan before, this instant last
+  double time_s = 0.0;            ///< of its last point: the instant of the pose
+  Eigen::Isometry3d T_world_imu;  ///< then
+  Array<Eigen::Vector3f> points;  ///< in range, as seen at that instant, in the IMU's axes: motion-compensated
+  Trajectory between;             ///< world_T_imu at the IMU's stamps since the scan before, this instant last
   ScanOutcome outcome = ScanOutcome::kRegistered;
   std::size_t n_measured = 0, n_points = 0, n_chosen = 0, n_matches = 0;  ///< of the scan, in range, that took part
-  double rms_m = 0.0;                               ///< of the matches' distances to their planes
-  std::vector<Eigen::Vector3d> open_shifts_world;   ///< unit; what no surface holds
+  double rms_m = 0.0;                                                     ///< of the matches' distances to their planes
+  std::vector<Eigen::Vector3d> open_shifts_world;                         ///< unit; what no surface holds
   std::vector<Eigen::Vector3d> open_turns_imu;
   double position_error_m = 0.0, rotation_error_deg = 0.0;  ///< standard deviations by the filter, the worst axes
   double cpu_s = 0.0;
@@ -44,11 +44,11 @@ struct OdometryScan {
 
 /// What the odometry began with, and what it left out.
 struct OdometrySummary {
-  std::size_t n_scans = 0;          ///< with a pose
-  std::size_t n_before_imu = 0;     ///< scans left out, as the IMU began later
-  std::size_t n_late_scans = 0;     ///< left out: they end no later than the one before
-  std::size_t n_late_samples = 0;   ///< of the IMU, likewise
-  std::size_t n_imu_gaps = 0;       ///< longer than the option allows
+  std::size_t n_scans = 0;         ///< with a pose
+  std::size_t n_before_imu = 0;    ///< scans left out, as the IMU began later
+  std::size_t n_late_scans = 0;    ///< left out: they end no later than the one before
+  std::size_t n_late_samples = 0;  ///< of the IMU, likewise
+  std::size_t n_imu_gaps = 0;      ///< longer than the option allows
   bool started_in_motion = false;
   double start_speed_mps = 0.0;
   Eigen::Vector3d gravity_world = Eigen::Vector3d::Zero(), gyro_bias = Eigen::Vector3d::Zero(),

@@ -11,9 +11,9 @@
 namespace cmap {
 
 struct KeyframeOptions {
-  double step_m = 2.0;    ///< of path: scans until there are one keyframe
-  double turn_deg = 30.0; ///< or of turn
-  double voxel_m = 0.1;   ///< its points are thinned to this
+  double step_m = 2.0;     ///< of path: scans until there are one keyframe
+  double turn_deg = 30.0;  ///< or of turn
+  double voxel_m = 0.1;    ///< its points are thinned to this
 };
 
 /// Odometry over a whole recording.

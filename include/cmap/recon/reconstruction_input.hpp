@@ -17,8 +17,8 @@ struct ReconstructionInput {
 };
 
 /// Opens what the run needs. Where there is no lio.tum, odometry with loop closure runs over the scans, with the IMU if
-/// there is one, and the capture's poses are those at the IMU's stamps, else at scans' ends. Reports progress. Throws as
-/// open_capture() and map_lidar() do.
+/// there is one, and the capture's poses are those at the IMU's stamps, else at scans' ends. Reports progress. Throws
+/// as open_capture() and map_lidar() do.
 ReconstructionInput open_reconstruction_input(const std::filesystem::path& folder, const ReconstructionOptions& options,
                                               Stage last, const Execution& execution = {});
 

@@ -140,8 +140,8 @@ Capture open_capture(const fs::path& folder, const CaptureParts& parts, const Fa
             [&](const Faults& found) { capture.scans = read_file_table(folder, "lidar.csv", 0.0, found); });
   const fs::path imu = folder / "imu.csv", lio = folder / "lio.tum", predictions = folder / "predictions";
   read_part(capture, "imu.csv", is_there(imu) ? parts.imu : Want::kNo, faults, [&](const Faults& found) {
-    capture.imu = read_imu(imu, description.acceleration_unit_mps2, calibration.imu_time_offset_s, found,
-                           capture.warnings);
+    capture.imu =
+        read_imu(imu, description.acceleration_unit_mps2, calibration.imu_time_offset_s, found, capture.warnings);
   });
   if (is_there(lio)) {
     faults.attempt([&] {

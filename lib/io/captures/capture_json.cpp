@@ -12,7 +12,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-
 Eigen::Matrix4d matrix_of(const Json& json, const char* name) {
   const auto refuse = [&] { throw UsageError(fmt::format("{}: a 4x4 matrix of numbers expected", name)); };
   if (!json.is_array() || json.size() != 4) refuse();
@@ -135,8 +134,8 @@ CaptureDescription parse_capture_json(const std::string& text, const std::string
     const std::string doubt = principal_point_doubt(camera.cx, camera.cy, camera.width, camera.height);
     if (!doubt.empty()) description.warnings.push_back({"camera_of_another_size", source + ": camera.K: " + doubt});
   });
-  for (auto [key, T] : {std::pair("T_imu_lidar", &calibration.T_imu_lidar),
-                        std::pair("T_lidar_camera", &calibration.T_lidar_camera)}) {
+  for (auto [key, T] :
+       {std::pair("T_imu_lidar", &calibration.T_imu_lidar), std::pair("T_lidar_camera", &calibration.T_lidar_camera)}) {
     part_of(key, [&](const Json& json) { *T = transform_of(json, key, description); });
   }
   part_of("T_world_imu_start", [&](const Json& json) {

@@ -30,9 +30,10 @@ std::string quaternion_order_fault(const Trajectory& world_T_imu, std::span<cons
     other += reordered(pose->rotation) * sample.specific_force_mps2;
   }
   if (as_read.isZero() || from_up_deg(as_read) < kWrong_deg || from_up_deg(other) > kRight_deg) return "";
-  return fmt::format("by gravity the quaternions are in the order w x y z, not x y z w: the IMU's mean force points {:.0f} "
-                     "deg from up as they are, {:.0f} deg in that order",
-                     from_up_deg(as_read), from_up_deg(other));
+  return fmt::format(
+      "by gravity the quaternions are in the order w x y z, not x y z w: the IMU's mean force points {:.0f} "
+      "deg from up as they are, {:.0f} deg in that order",
+      from_up_deg(as_read), from_up_deg(other));
 }
 
 }  // namespace cmap

@@ -9,8 +9,7 @@ StateVector kalman_step(const NavState& estimate, const NavState& predicted, con
   const StateVector from_predicted = difference(estimate, predicted);
   // The difference after a further small change d of the estimate is from_predicted + J d.
   StateMatrix J = StateMatrix::Identity();
-  J.block<3, 3>(part::kRotation, part::kRotation) =
-      inverse_right_jacobian(from_predicted.segment<3>(part::kRotation));
+  J.block<3, 3>(part::kRotation, part::kRotation) = inverse_right_jacobian(from_predicted.segment<3>(part::kRotation));
   const StateMatrix prior = predicted_covariance.llt().solve(StateMatrix::Identity());
   StateMatrix information = J.transpose() * prior * J;
   StateVector gradient = J.transpose() * (prior * from_predicted);

@@ -7,9 +7,9 @@ namespace cmap {
 /// How the body moved over a short time.
 struct MotionInput {
   double duration_s = 0.0;
-  Eigen::Vector3d rate_radps = Eigen::Vector3d::Zero();   ///< body; the gyro's bias is taken off
-  Eigen::Vector3d force_mps2 = Eigen::Vector3d::Zero();   ///< body; the accelerometer's bias is taken off
-  bool rate_measured = true;   ///< false: the rate is a guess, with the noise of one
+  Eigen::Vector3d rate_radps = Eigen::Vector3d::Zero();  ///< body; the gyro's bias is taken off
+  Eigen::Vector3d force_mps2 = Eigen::Vector3d::Zero();  ///< body; the accelerometer's bias is taken off
+  bool rate_measured = true;                             ///< false: the rate is a guess, with the noise of one
   bool force_measured = true;  ///< false: the velocity is taken for constant, with the noise of that
 };
 
@@ -24,7 +24,8 @@ struct MotionNoise {
 };
 
 /// The state after it. One step of the midpoint rule: the force turns with the body's attitude in the middle,
-///   p+ = p + v dt + a dt^2 / 2,  v+ = v + a dt,  R+ = R Exp(w dt),  a = R Exp(w dt / 2) (f - b_a) + g,  w = rate - b_g.
+///   p+ = p + v dt + a dt^2 / 2,  v+ = v + a dt,  R+ = R Exp(w dt),  a = R Exp(w dt / 2) (f - b_a) + g,  w = rate -
+///   b_g.
 NavState propagated(const NavState& state, const MotionInput& input);
 
 /// Derivative of the error after the step by the error before it.

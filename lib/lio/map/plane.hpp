@@ -8,9 +8,9 @@ namespace cmap {
 /// Sums over measured points, from which their plane follows.
 struct PointSums {
   double n = 0.0;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();                                  ///< about the place that the user says
-  double xx = 0.0, xy = 0.0, xz = 0.0, yy = 0.0, yz = 0.0, zz = 0.0;              ///< about the same
-  double variance = 0.0;                                                          ///< of the points' measurements, m^2
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();                      ///< about the place that the user says
+  double xx = 0.0, xy = 0.0, xz = 0.0, yy = 0.0, yz = 0.0, zz = 0.0;  ///< about the same
+  double variance = 0.0;                                              ///< of the points' measurements, m^2
 
   void add(const Eigen::Vector3d& p, double point_variance_m2) {
     n += 1.0;

@@ -17,9 +17,7 @@ Eigen::Vector3d corner_of(int child, const Eigen::Vector3d& corner, double half_
   return corner + half_m * Eigen::Vector3d(child & 1, (child >> 1) & 1, child >> 2);
 }
 
-Eigen::Vector3d corner_of(const VoxelKey& key, double size_m) {
-  return size_m * Eigen::Vector3d(key.x, key.y, key.z);
-}
+Eigen::Vector3d corner_of(const VoxelKey& key, double size_m) { return size_m * Eigen::Vector3d(key.x, key.y, key.z); }
 
 }  // namespace
 
@@ -67,7 +65,8 @@ void PlaneMap::add_to(Cell& cell, const Eigen::Vector3d& corner, double size_m, 
   if (cell.is_plane || level >= options_.levels) return;
   if (cell.children == nullptr) cell.children = &children_.emplace_back();
   std::array<std::vector<MapPoint>, 8> parts;
-  for (const MapPoint& p : points) parts[static_cast<std::size_t>(child_of(p.position, corner, 0.5 * size_m))].push_back(p);
+  for (const MapPoint& p : points)
+    parts[static_cast<std::size_t>(child_of(p.position, corner, 0.5 * size_m))].push_back(p);
   for (int child = 0; child < 8; ++child) {
     const auto& part = parts[static_cast<std::size_t>(child)];
     if (part.empty()) continue;

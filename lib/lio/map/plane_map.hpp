@@ -52,8 +52,8 @@ class PlaneMap {
   };
   struct Root {
     Cell cell;
-    double seen_at_m = 0.0;          ///< path
-    std::uint32_t first_point = 0;   ///< 1 + index of the first of this scan's points here; 0: none
+    double seen_at_m = 0.0;         ///< path
+    std::uint32_t first_point = 0;  ///< 1 + index of the first of this scan's points here; 0: none
   };
 
   VoxelKey key_of(const Eigen::Vector3d& point) const;

@@ -37,8 +37,8 @@ std::vector<MotionInput> ImuQueue::inputs(double from_s, double to_s) const {
   std::vector<MotionInput> steps;
   auto after = std::ranges::upper_bound(samples_, from_s, {}, &ImuSample::time_s);
   for (double t = from_s; t < to_s;) {
-    const bool measured = after != samples_.begin() && after != samples_.end() &&
-                          after->time_s - (after - 1)->time_s <= max_gap_s_;
+    const bool measured =
+        after != samples_.begin() && after != samples_.end() && after->time_s - (after - 1)->time_s <= max_gap_s_;
     const double next = after == samples_.end() ? to_s : std::min(to_s, after->time_s);
     if (measured) {
       const ImuSample a = sample_at(*(after - 1), *after, t), b = sample_at(*(after - 1), *after, next);

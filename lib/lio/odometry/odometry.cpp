@@ -23,8 +23,8 @@ constexpr double kSpreadNoises = 3.0;
 /// Without an IMU, of what the prediction of a pose was off by, velocity and rate take this share: they follow within
 /// three scans, and an error early in a scan dies out (all of it would swing from scan to scan).
 constexpr double kRateGain = 0.7;
-/// A scan goes into the map where the sensor has moved so far since the last that did, or is one of the first: seen from
-/// one place again and again, cells would be settled by the same few points.
+/// A scan goes into the map where the sensor has moved so far since the last that did, or is one of the first: seen
+/// from one place again and again, cells would be settled by the same few points.
 constexpr double kInsertStep_m = 0.1, kInsertTurn_rad = 1.0 * std::numbers::pi / 180.0;
 constexpr int kFirstScans = 10;
 /// Of poses before a scan's begin that its first points may need: stamps and cuts of turns wander.
@@ -54,8 +54,11 @@ MotionNoise noise_of(const OdometryOptions& o) {
 }
 
 PlaneMapOptions map_options(const OdometryOptions& o) {
-  PlaneMapOptions map{.voxel_m = o.voxel_m, .levels = o.levels, .most_points = o.cell_points,
-                      .forget_after_m = o.forget_after_m, .plane = {}};
+  PlaneMapOptions map{.voxel_m = o.voxel_m,
+                      .levels = o.levels,
+                      .most_points = o.cell_points,
+                      .forget_after_m = o.forget_after_m,
+                      .plane = {}};
   map.plane.most_thickness_m = o.plane_thickness_m;
   map.plane.least_spread_m = kSpreadNoises * o.range_noise_m;
   return map;
@@ -101,8 +104,13 @@ struct Odometry::State {
   OdometrySummary summary;
 
   State(const OdometryOptions& o, const Eigen::Isometry3d& T, const std::optional<Eigen::Isometry3d>& start, Take t)
-      : options(o), T_imu_lidar(T), T_world_start(start), take(std::move(t)), noise(noise_of(o)),
-        imu(o.max_imu_gap_s), map(map_options(o)) {}
+      : options(o),
+        T_imu_lidar(T),
+        T_world_start(start),
+        take(std::move(t)),
+        noise(noise_of(o)),
+        imu(o.max_imu_gap_s),
+        map(map_options(o)) {}
 
   void add(ScanPoints scan);
   void work(bool to_the_end);
@@ -116,9 +124,7 @@ struct Odometry::State {
   void insert(const ScanPoints& scan, const MotionTrack& track);
   void deliver(const ScanPoints& scan, const MotionTrack& track, OdometryScan result, double cpu_begin_s);
   std::vector<MotionInput> inputs(double from_s, double to_s) const;
-  bool covered(const ScanPoints& scan) const {
-    return !options.use_imu || imu.last_s() >= scan.end_s;
-  }
+  bool covered(const ScanPoints& scan) const { return !options.use_imu || imu.last_s() >= scan.end_s; }
 };
 
 Odometry::Odometry(const OdometryOptions& options, const Eigen::Isometry3d& T_imu_lidar,
@@ -257,8 +263,7 @@ void Odometry::State::process(const ScanPoints& scan) {
   const MotionTrack motion = predict(scan.end_s, predicted_covariance);
   const std::vector<std::uint32_t> chosen =
       thinned(scan.positions, options.scan_voxel_m, static_cast<std::size_t>(options.scan_points));
-  const ScanRegistration found =
-      register_scan(map, scan, chosen, motion, predicted_covariance, T_imu_lidar, options);
+  const ScanRegistration found = register_scan(map, scan, chosen, motion, predicted_covariance, T_imu_lidar, options);
   OdometryScan result;
   result.outcome = outcome_of(found);
   const bool registered = result.outcome == ScanOutcome::kRegistered;
@@ -294,8 +299,7 @@ void Odometry::State::insert(const ScanPoints& scan, const MotionTrack& motion) 
   for (const std::uint32_t i : thinned(scan.positions, options.insert_voxel_m, scan.positions.size())) {
     const Eigen::Vector3d p = scan.positions[i].cast<double>();
     // Across a surface at 45 degrees.
-    const double variance =
-        0.5 * (options.range_noise_m * options.range_noise_m + beam * beam * p.squaredNorm());
+    const double variance = 0.5 * (options.range_noise_m * options.range_noise_m + beam * beam * p.squaredNorm());
     points.push_back({poses.at(scan.before_end_s[i]).T_world_lidar * p, variance});
   }
   map.add(points, summary.path_m);

@@ -78,8 +78,7 @@ OdometryRun OdometryCollector::finish(const OdometrySummary& summary) {
   return std::move(state_->run);
 }
 
-PointCloud keyframe_map(std::span<const Keyframe> keyframes, std::span<const Eigen::Isometry3d> poses,
-                        double voxel_m) {
+PointCloud keyframe_map(std::span<const Keyframe> keyframes, std::span<const Eigen::Isometry3d> poses, double voxel_m) {
   PointCloud map;
   if (!poses.empty()) map.origin = choose_origin({poses.front().translation(), poses.front().translation()});
   for (std::size_t k = 0; k < keyframes.size(); ++k) {

@@ -12,7 +12,7 @@ namespace cmap {
 /// A scan's points within range, every one in the LiDAR frame at its own time, and when that was.
 struct ScanPoints {
   std::vector<Eigen::Vector3f> positions;
-  std::vector<float> before_end_s;  ///< from the point's time to end_s, not negative
+  std::vector<float> before_end_s;    ///< from the point's time to end_s, not negative
   double begin_s = 0.0, end_s = 0.0;  ///< times of its first and its last point
   std::size_t n_measured = 0;         ///< points of the scan, those out of range too
 };

@@ -14,8 +14,8 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 /// Of two registered scans: less is rest. Sensors that never look the same way twice (rosettes) seem to move by
 /// centimeters while they stand.
 constexpr double kRestSpeed_mps = 0.25, kRestRate_radps = 3.0 * kDegree;
-/// An IMU whose rates and forces vary by less, in standard deviations, stands or glides; it stands, if registration says
-/// no more than this.
+/// An IMU whose rates and forces vary by less, in standard deviations, stands or glides; it stands, if registration
+/// says no more than this.
 constexpr double kQuietRate_radps = 0.6 * kDegree, kQuietForce_mps2 = 0.1, kQuietSpeed_mps = 1.0;
 
 /// A steady motion, in the body's axes at a scan's end.
@@ -73,7 +73,7 @@ Eigen::Vector3d mean_force(std::span<const ImuSample> imu, const Eigen::Vector3d
 }
 
 /// Root of the mean squared deviation from the mean.
-double spread(std::span<const ImuSample> imu, Eigen::Vector3d ImuSample::* member) {
+double spread(std::span<const ImuSample> imu, Eigen::Vector3d ImuSample::*member) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const ImuSample& sample : imu) sum += sample.*member;
   const Eigen::Vector3d mean = sum / static_cast<double>(imu.size());

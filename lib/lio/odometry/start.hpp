@@ -3,8 +3,8 @@
 #include <optional>
 #include <span>
 
-#include "cmap/lio/odometry_options.hpp"
 #include "cmap/geometry/imu_sample.hpp"
+#include "cmap/lio/odometry_options.hpp"
 #include "filter/nav_state.hpp"
 #include "odometry/scan_points.hpp"
 

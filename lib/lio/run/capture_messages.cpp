@@ -7,7 +7,6 @@
 namespace cmap {
 namespace {
 
-
 /// What the accelerations must be multiplied by to be in m/s^2.
 double acceleration_factor(const Capture& capture, std::vector<Warning>& warnings) {
   if (capture.imu.empty()) return 1.0;
@@ -22,9 +21,10 @@ double acceleration_factor(const Capture& capture, std::vector<Warning>& warning
                                                 file, mean)});
     return kStandardGravity_mps2;
   }
-  throw InputError(fmt::format("{}: accelerations have a mean length of {:.4g}; at rest gravity alone is 9.8 m/s^2, or "
-                               "1 g (wrong columns or unit?)",
-                               file, mean));
+  throw InputError(
+      fmt::format("{}: accelerations have a mean length of {:.4g}; at rest gravity alone is 9.8 m/s^2, or "
+                  "1 g (wrong columns or unit?)",
+                  file, mean));
 }
 
 }  // namespace

@@ -56,9 +56,11 @@ void add_warnings(LidarMapping& mapping) {
                                 "by prediction alone",
                                 scan.time_s, scan.n_matches, scan.n_chosen)});
   }
-  const auto open = static_cast<std::size_t>(std::ranges::count_if(
-      mapping.scans, [](const OdometryScan& scan) { return !scan.open_shifts_world.empty() || !scan.open_turns_imu.empty(); }));
-  warn(mapping, "open_directions", open, "scans leave a direction open (health.json names it): prediction decided there");
+  const auto open = static_cast<std::size_t>(std::ranges::count_if(mapping.scans, [](const OdometryScan& scan) {
+    return !scan.open_shifts_world.empty() || !scan.open_turns_imu.empty();
+  }));
+  warn(mapping, "open_directions", open,
+       "scans leave a direction open (health.json names it): prediction decided there");
 }
 
 void require_poses(const OdometryRun& found, const OdometryOptions& options, std::optional<std::string> broken_off) {
@@ -67,15 +69,17 @@ void require_poses(const OdometryRun& found, const OdometryOptions& options, std
     if (any) return;
     std::size_t n = 0;
     for (const OdometryScan& scan : found.scans) n += scan.n_measured;
-    throw InputError(fmt::format("no scan has a point between {:g} and {:g} m ({} points in {} scans): min_range_m, "
-                                 "max_range_m, or the unit of the points",
-                                 options.min_range_m, options.max_range_m, n, found.scans.size()));
+    throw InputError(
+        fmt::format("no scan has a point between {:g} and {:g} m ({} points in {} scans): min_range_m, "
+                    "max_range_m, or the unit of the points",
+                    options.min_range_m, options.max_range_m, n, found.scans.size()));
   }
   if (broken_off) throw InputError(*broken_off);
   if (found.summary.n_before_imu > 0) {
-    throw InputError(fmt::format("all {} scans come before the IMU begins: other clocks? time_offset.imu_s in "
-                                 "capture.json, or --no-imu",
-                                 found.summary.n_before_imu));
+    throw InputError(
+        fmt::format("all {} scans come before the IMU begins: other clocks? time_offset.imu_s in "
+                    "capture.json, or --no-imu",
+                    found.summary.n_before_imu));
   }
   throw InputError(options.use_imu ? "no IMU samples, or no scan within their times; --no-imu does without"
                                    : "no scan to work on");
@@ -105,11 +109,10 @@ LidarMapping map_lidar(const LidarMessages& next, const CaptureCalibration& cali
                        const MappingRun& run) {
   const ExecutionScope scope(run.execution);
   OdometryCollector collector(options.keyframes);
-  Odometry odometry(options.odometry, calibration.T_imu_lidar, calibration.T_world_imu_start,
-                    [&](OdometryScan&& scan) {
-                      if (run.scan) run.scan(scan);
-                      collector.add(std::move(scan));
-                    });
+  Odometry odometry(options.odometry, calibration.T_imu_lidar, calibration.T_world_imu_start, [&](OdometryScan&& scan) {
+    if (run.scan) run.scan(scan);
+    collector.add(std::move(scan));
+  });
   LidarMapping mapping;
   mapping.broken_off = take_messages(next, odometry, run);
   OdometryRun found = collector.finish(odometry.summary());

@@ -35,7 +35,7 @@ Json scan_json(const OdometryScan& scan) {
           {"cpu_s", scan.cpu_s}};
 }
 
-double median_of(const std::vector<OdometryScan>& scans, double OdometryScan::* member) {
+double median_of(const std::vector<OdometryScan>& scans, double OdometryScan::*member) {
   std::vector<double> values;
   for (const OdometryScan& scan : scans) values.push_back(scan.*member);
   std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
@@ -60,7 +60,8 @@ Json summary_json(const OdometrySummary& s) {
 
 Json health_json(const LidarMapping& mapping, const MappingOptions& options) {
   Json warnings = Json::array(), scans = Json::array();
-  for (const Warning& warning : mapping.warnings) warnings.push_back({{"id", warning.id}, {"message", warning.message}});
+  for (const Warning& warning : mapping.warnings)
+    warnings.push_back({{"id", warning.id}, {"message", warning.message}});
   for (const OdometryScan& scan : mapping.scans) scans.push_back(scan_json(scan));
   return {{"schema", "cmap.lio/1"},
           {"tool", {{"name", "cmap_lio"}, {"version", kVersion}}},
@@ -85,7 +86,9 @@ std::string mapping_table(const LidarMapping& mapping) {
     share += static_cast<double>(scan.n_matches) / static_cast<double>(scan.n_chosen);
   }
   std::string text;
-  const auto line = [&](const char* name, const std::string& value) { text += fmt::format("{:<18} {}\n", name, value); };
+  const auto line = [&](const char* name, const std::string& value) {
+    text += fmt::format("{:<18} {}\n", name, value);
+  };
   line("scans", fmt::format("{}, of which {} registered; {:.1f} s", s.n_scans, n_registered, seconds));
   line("path", fmt::format("{:.2f} m", s.path_m));
   line("start", s.started_in_motion ? fmt::format("in motion, {:.2f} m/s", s.start_speed_mps) : "at rest");
@@ -100,7 +103,8 @@ std::string mapping_table(const LidarMapping& mapping) {
                               mapping.loops->candidates.size(), mapping.loops->largest_change_m));
   }
   line("map", fmt::format("{} points", mapping.map.size()));
-  line("time a scan", fmt::format("{:.1f} ms of one core (median)", 1e3 * median_of(mapping.scans, &OdometryScan::cpu_s)));
+  line("time a scan",
+       fmt::format("{:.1f} ms of one core (median)", 1e3 * median_of(mapping.scans, &OdometryScan::cpu_s)));
   return text;
 }
 

@@ -29,8 +29,8 @@ std::vector<Frustum> frusta_of(const SessionPredictions& session, const Similari
   std::vector<Frustum> frusta;
   for (std::size_t f = 0; f < session.frame_count(); ++f) {
     const Eigen::Isometry3d& T = session.T_camera_session[f];
-    frusta.push_back({T.linear() * T_session_world.linear(),
-                      T.linear() * T_session_world.translation + T.translation(), session.intrinsics[f]});
+    frusta.push_back({T.linear() * T_session_world.linear(), T.linear() * T_session_world.translation + T.translation(),
+                      session.intrinsics[f]});
   }
   return frusta;
 }

@@ -20,8 +20,8 @@ ReconstructionInput open_reconstruction_input(const std::filesystem::path& folde
   mapping.odometry.use_imu = !capture.imu.empty();
   const LidarMessages messages = capture_messages(capture, capture.warnings);
   const double duration_s = capture.scans.back().time_s - capture.scans.front().time_s;
-  input.odometry = map_lidar(messages, capture.calibration, mapping,
-                             {.duration_s = duration_s, .scan = {}, .execution = execution});
+  input.odometry =
+      map_lidar(messages, capture.calibration, mapping, {.duration_s = duration_s, .scan = {}, .execution = execution});
   if (input.odometry->broken_off) throw InputError(*input.odometry->broken_off);
   capture.lio = input.odometry->imu_stamps;
   capture.warnings.insert(capture.warnings.end(), input.odometry->warnings.begin(), input.odometry->warnings.end());
