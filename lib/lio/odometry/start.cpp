@@ -1,5 +1,6 @@
 #include "odometry/start.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -16,7 +17,7 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kRestSpeed_mps = 0.25, kRestRate_radps = 3.0 * kDegree;
 /// An IMU whose rates and forces vary by less, in standard deviations, stands or glides; it stands, if registration
 /// says no more than this.
-constexpr double kQuietRate_radps = 0.6 * kDegree, kQuietForce_mps2 = 0.1, kQuietSpeed_mps = 1.0;
+constexpr double kQuietRate_radps = 0.6 * kDegree, kQuietForce_mps2 = 0.1, kQuietSpeed_mps = 3.0;
 
 /// A steady motion, in the body's axes at a scan's end.
 struct Twist {
@@ -97,23 +98,26 @@ Eigen::Quaterniond leveled(const Eigen::Vector3d& force) {
   return rotation_exp({0.0, 0.0, -std::atan2(ahead.y(), ahead.x())}) * upright;
 }
 
-StateMatrix start_covariance(bool with_imu, bool in_motion) {
+/// @param speed_mps  by registration; at rest by the IMU it is what the start may be wrong by
+StateMatrix start_covariance(bool with_imu, bool in_motion, double speed_mps) {
   StateVector deviations;
   const auto set = [&](int first, double deviation) { deviations.segment<3>(first).setConstant(deviation); };
   set(part::kRotation, 1e-4);
   set(part::kPosition, 1e-4);
-  set(part::kVelocity, in_motion ? 0.3 : 0.05);
+  set(part::kVelocity, in_motion ? 0.3 : std::max(0.05, 0.3 * speed_mps));
   set(part::kGyroBias, !with_imu ? 0.1 : in_motion ? 0.01 : 0.003);
   set(part::kForceBias, with_imu ? 0.05 : 1e-3);
   set(part::kGravity, !with_imu ? 1e-3 : in_motion ? 0.5 : 0.05);
   return StateMatrix(deviations.array().square().matrix().asDiagonal());
 }
 
-Start make_start(const ScanPoints& first, std::span<const ImuSample> imu, const Twist& twist, bool in_motion,
+/// @param registered  the motion by registration; counts where it is one
+Start make_start(const ScanPoints& first, std::span<const ImuSample> imu, const Twist& registered, bool in_motion,
                  const std::optional<Eigen::Isometry3d>& T_world_start) {
+  const Twist twist = in_motion ? registered : Twist{};
   Start start;
   start.in_motion = in_motion;
-  start.covariance = start_covariance(!imu.empty(), in_motion);
+  start.covariance = start_covariance(!imu.empty(), in_motion, registered.velocity.norm());
   NavState& state = start.at_begin;
   const Eigen::Vector3d force =
       imu.empty() ? Eigen::Vector3d(0.0, 0.0, kStandardGravity_mps2) : mean_force(imu, twist.rate, first.begin_s);
@@ -149,7 +153,7 @@ Start find_start(const ScanPoints& first, const ScanPoints& second, std::span<co
     twist = registered_twist(first, second, twist, T_imu_lidar, options);
   }
   const bool in_motion = !is_at_rest(twist, imu);
-  return make_start(first, imu, in_motion ? twist : Twist{}, in_motion, T_world_start);
+  return make_start(first, imu, twist, in_motion, T_world_start);
 }
 
 Start start_at_rest(const ScanPoints& first, std::span<const ImuSample> imu,
