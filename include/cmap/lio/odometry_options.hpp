@@ -28,7 +28,7 @@ struct OdometryOptions {
   double scan_voxel_m = 1.0;    ///< points of a scan are thinned to this for registration
   int scan_points = 2000;       ///< at most as many take part
   double insert_voxel_m = 0.2;  ///< and to this for the map
-  int iterations = 8;
+  int iterations = 15;
   double gate = 3.0;  ///< standard deviations
 
   // The IMU.

@@ -11,6 +11,9 @@ namespace {
 /// more; of flights over fields half have less than 5, and those with less than 1 drift without the IMU.
 constexpr double kLeastHeld = 1.0;
 constexpr double kRotationDone_rad = 1e-5, kShiftDone_m = 1e-4;
+/// Of the gate of the prediction's variance, what is left for the next step. Without an IMU hand-held turns would be
+/// locked out before they have settled; with one, what is far from the prediction is rather wrong.
+constexpr double kGateCloses = 0.25, kGateClosesWithoutImu = 0.8, kSettledGateCloses = 0.1;
 
 /// One pass over the points: planes at the estimate, and the system that they make.
 class MatchingPass {
@@ -60,6 +63,12 @@ class MatchingPass {
   const PoseMatrix& prior_;
 };
 
+/// What the prediction's variance allows a point some way off, m^2.
+double gate_m2(const PoseMatrix& prior) {
+  constexpr double kReach_m = 20.0;
+  return prior.diagonal().tail<3>().maxCoeff() + kReach_m * kReach_m * prior.diagonal().head<3>().maxCoeff();
+}
+
 bool is_small(const StateVector& change) {
   return change.segment<3>(part::kRotation).norm() < kRotationDone_rad &&
          change.segment<3>(part::kPosition).norm() < kShiftDone_m;
@@ -96,9 +105,11 @@ ScanRegistration register_scan(const PlaneMap& map, const ScanPoints& scan, std:
     const StateVector change =
         kalman_step(result.state, track.predicted(), predicted_covariance, pass.system, result.covariance);
     result.state = moved(result.state, change);
-    if (is_small(change)) break;
-    // What the first steps found need not be settled yet: the gate closes by halves.
-    gate *= 0.25;
+    const bool settled = is_small(change);
+    if (settled && gate_m2(gate) < options.model_noise_m * options.model_noise_m) break;
+    // What the first steps found need not be settled yet; what is settled, matches that the prediction alone allowed
+    // may have held.
+    gate *= settled ? kSettledGateCloses : options.use_imu ? kGateCloses : kGateClosesWithoutImu;
   }
   return result;
 }
