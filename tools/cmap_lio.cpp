@@ -17,6 +17,7 @@
 #endif
 #include "command_line.hpp"
 #include "files.hpp"
+#include "own_figure.hpp"
 #include "program.hpp"
 
 namespace {
@@ -75,20 +76,10 @@ cmap::MappingOptions resolve_options(const Arguments& a) {
 }
 
 #ifdef CMAP_WITH_RENDER
-void check_figure(const Arguments& a) {
-  if (a.figure.empty()) return;
-  cmap::check_image_name(a.figure);
-  cmap::require_writable(a.figure);
-}
 void write_figure(const cmap::LidarMapping& mapping, const std::string& name, cmap::OutputFile& file) {
   cmap::write_image(cmap::draw_lidar_mapping(mapping), name, file);
 }
 #else
-void check_figure(const Arguments& a) {
-  if (!a.figure.empty())
-    throw cmap::UnsupportedError(
-        "--figure: this build has no figures (tools/install_dependencies.sh --all, build again)");
-}
 void write_figure(const cmap::LidarMapping&, const std::string&, cmap::OutputFile&) {}
 #endif
 
@@ -178,7 +169,7 @@ ExitCode run(const Arguments& a) {
     return ExitCode::kDone;
   }
   if (a.input.empty() || a.output.empty()) throw cmap::UsageError("CAPTURE and --output are required");
-  check_figure(a);
+  cmap::check_figure(a.figure);
   Source source;
   if (cmap::is_recording(a.input)) {
     open_recording(a, source);

@@ -20,6 +20,7 @@
 #endif
 #include "command_line.hpp"
 #include "files.hpp"
+#include "own_figure.hpp"
 #include "program.hpp"
 #include "recording_input.hpp"
 
@@ -121,20 +122,10 @@ void evaluate_map(const Arguments& a, cmap::PointCloudFile reference, const std:
 }
 
 #ifdef CMAP_WITH_RENDER
-void check_figure(const Arguments& a) {
-  if (a.figure.empty()) return;
-  cmap::check_image_name(a.figure);
-  cmap::require_writable(a.figure);
-}
 void write_figure(const cmap::Reconstruction& r, const std::string& name, cmap::OutputFile& file) {
   cmap::write_image(cmap::draw_reconstruction(r), name, file);
 }
 #else
-void check_figure(const Arguments& a) {
-  if (!a.figure.empty())
-    throw cmap::UnsupportedError(
-        "--figure: this build has no figures (tools/install_dependencies.sh --all, build again)");
-}
 void write_figure(const cmap::Reconstruction&, const std::string&, cmap::OutputFile&) {}
 #endif
 
@@ -189,7 +180,7 @@ void check_arguments(const Arguments& a) {
       throw cmap::UsageError(fmt::format("{} needs the whole run: not with --stop-after", option));
     }
   }
-  check_figure(a);
+  cmap::check_figure(a.figure);
 }
 
 fs::path session_map_path(const Arguments& a, const std::string& session) {
